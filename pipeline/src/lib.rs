@@ -1,0 +1,1 @@
+//! Scenes, geometry and shadow techniques.

@@ -1,1 +1,39 @@
 //! Scenes, geometry and shadow techniques.
+//!
+//! From a [`scene::Scene`] (world-space meshes, lights, a camera) this crate
+//! derives what hard and soft shadow algorithms consume: edge
+//! [`adjacency`], [`silhouette`]s, infinite shadow [`volume`]s, and the f64
+//! [`oracle`] that says what the picture should have been.
+//!
+//! Conventions, everywhere: right-handed world, y up, triangles
+//! counter-clockwise seen from outside, column vectors, matrices named
+//! target-from-source (`clip_from_world`), depth 0 at the near plane and 1 at
+//! infinity. Geometry is decided in f64 and rounded to f32 once, so every
+//! result is the same on every machine; transcendental functions come from the
+//! pinned `libm` crate.
+//!
+//! ```
+//! use gnomon_pipeline::{adjacency::EdgeAdjacency, light::HardLight};
+//! use gnomon_pipeline::{scene::builtin, volume::ShadowVolume};
+//!
+//! let scene = builtin::build("peer-a")?;
+//! let cylinder = &scene.casters().next().unwrap().mesh;
+//! let adjacency = EdgeAdjacency::new(cylinder.triangles());
+//! assert!(adjacency.closedness(cylinder).is_closed());
+//!
+//! let light = scene.lights[0].hard();
+//! let volume = ShadowVolume::of_closed(cylinder, &adjacency, light);
+//! assert_eq!(volume.light_cap().len() + volume.dark_cap().len(), 256);
+//! assert_eq!(volume.sides().len(), 2 * 66); // two triangles per silhouette edge
+//! # Ok::<(), gnomon_pipeline::error::UnknownScene>(())
+//! ```
+
+pub mod adjacency;
+pub mod error;
+pub mod light;
+pub mod mesh;
+pub mod scene;
+pub mod shape;
+pub mod silhouette;
+pub mod volume;
+pub mod winding;

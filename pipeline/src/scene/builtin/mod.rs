@@ -1,0 +1,166 @@
+//! The built-in scenes: procedural, so that a fresh machine needs no data.
+//!
+//! One file per family. To add a scene, write its file and add one line to
+//! [`SCENES`]; every list, suite and message picks it up from there.
+
+mod peers;
+
+use super::Scene;
+use crate::error::UnknownScene;
+
+/// A built-in scene: its name, one line about it, and how it is made.
+#[derive(Clone, Copy, Debug)]
+pub struct BuiltinScene {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One line for people.
+    pub description: &'static str,
+    build: fn() -> Scene,
+}
+
+impl BuiltinScene {
+    /// Makes the scene, with [`Scene::name`] set to the registered name.
+    pub fn build(&self) -> Scene {
+        let mut scene = (self.build)();
+        scene.name = self.name.to_owned();
+        scene
+    }
+}
+
+/// All built-in scenes, in the order in which they are listed.
+pub const SCENES: &[BuiltinScene] = &[
+    entry(
+        "peer-a",
+        "64-gon cylinder over a plane, to the peers' numbers",
+        peers::a,
+    ),
+    entry(
+        "peer-b",
+        "27 spheres of 1280 triangles over a plane, to the peers' numbers",
+        peers::b,
+    ),
+    entry(
+        "peer-c",
+        "torus knot over a 100,352-triangle terrain, to the peers' numbers",
+        peers::c,
+    ),
+];
+
+const fn entry(
+    name: &'static str,
+    description: &'static str,
+    build: fn() -> Scene,
+) -> BuiltinScene {
+    BuiltinScene {
+        name,
+        description,
+        build,
+    }
+}
+
+/// Makes the scene called `name`.
+///
+/// # Errors
+/// No such scene: the error lists all names and suggests the nearest.
+pub fn build(name: &str) -> Result<Scene, UnknownScene> {
+    match SCENES.iter().find(|s| s.name == name) {
+        Some(scene) => Ok(scene.build()),
+        None => Err(UnknownScene {
+            name: name.to_owned(),
+            nearest: nearest(name),
+            known: SCENES.iter().map(|s| s.name).collect(),
+        }),
+    }
+}
+
+/// The known name with the fewest edits from `name`, if few enough to be a
+/// slip of the finger.
+fn nearest(name: &str) -> Option<&'static str> {
+    let close = |known: &'static str| (edit_distance(name, known), known);
+    let (distance, known) = SCENES
+        .iter()
+        .map(|s| close(s.name))
+        .min_by_key(|(d, _)| *d)?;
+    (distance <= 1 + known.len() / 4).then_some(known)
+}
+
+/// Levenshtein distance, by characters.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, to) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(from != *to);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adjacency::EdgeAdjacency;
+    use crate::light::HardLight;
+    use crate::winding::mesh_winding;
+
+    #[test]
+    fn unknown_names_get_a_list_and_a_suggestion() {
+        let error = build("peer_a").unwrap_err();
+        assert_eq!(error.nearest, Some("peer-a"));
+        assert!(error.to_string().contains("did you mean 'peer-a'"));
+        assert!(error.to_string().contains("peer-c"));
+        assert_eq!(build("zzzzzzzzzz").unwrap_err().nearest, None);
+    }
+
+    #[test]
+    fn names_are_unique_and_kebab_case() {
+        let mut names: Vec<_> = SCENES.iter().map(|s| s.name).collect();
+        assert!(names.iter().all(|n| {
+            n.chars()
+                .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-')
+        }));
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), SCENES.len());
+    }
+
+    /// Casters are closed, face outwards and do not enclose the light; scenes
+    /// have lights and something to see; making them twice gives the same.
+    #[test]
+    fn every_scene_is_fit_for_shadow_volumes() {
+        for entry in SCENES {
+            let scene = entry.build();
+            assert_eq!(scene.name, entry.name);
+            assert!(!scene.lights.is_empty() && scene.casters().count() > 0);
+            for caster in scene.casters() {
+                let report = EdgeAdjacency::new(caster.mesh.triangles()).closedness(&caster.mesh);
+                assert!(
+                    report.is_closed(),
+                    "{} {}: {report}",
+                    entry.name,
+                    caster.name
+                );
+                assert!(
+                    caster.mesh.signed_volume() > 0.0,
+                    "{} {}",
+                    entry.name,
+                    caster.name
+                );
+                for light in &scene.lights {
+                    if let HardLight::Point(p) = light.hard() {
+                        assert_eq!(mesh_winding(&caster.mesh, p), 0, "{}", entry.name);
+                    }
+                }
+            }
+            assert!(
+                entry.build() == scene,
+                "{} is not deterministic",
+                entry.name
+            );
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Scenes: what is drawn, what casts, what receives, from where it is seen.
+
+pub mod builtin;
+mod camera;
+
+use std::sync::Arc;
+
+pub use camera::{Camera, EyeRays};
+
+use crate::light::Light;
+use crate::mesh::Mesh;
+
+/// A complete scene: everything in world space, nothing left to look up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Name for reports and file names.
+    pub name: String,
+    /// The eye.
+    pub camera: Camera,
+    /// At least one light.
+    pub lights: Vec<Light>,
+    /// Objects in drawing order.
+    pub objects: Vec<Object>,
+    /// Linear RGB light that reaches everything, shadowed or not.
+    pub ambient: [f32; 3],
+    /// Linear RGB where no surface is seen.
+    pub background: [f32; 3],
+    /// Image width and height asked for by a scene file.
+    pub size: Option<[u32; 2]>,
+    /// What was found amiss when the scene was made, without stopping it.
+    pub warnings: Vec<SceneWarning>,
+}
+
+impl Scene {
+    /// Objects that cast shadows, in drawing order.
+    pub fn casters(&self) -> impl Iterator<Item = &Object> {
+        self.objects.iter().filter(|o| o.casts)
+    }
+
+    /// Triangles of all objects.
+    pub fn triangle_count(&self) -> usize {
+        self.objects.iter().map(|o| o.mesh.triangles().len()).sum()
+    }
+}
+
+/// A mesh with a material and its part in shadowing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Name for messages and reports.
+    pub name: String,
+    /// World-space geometry.
+    pub mesh: Arc<Mesh>,
+    /// Whether it casts shadow.
+    pub casts: bool,
+    /// Whether shadow falls on it.
+    pub receives: bool,
+    /// How it is shaded.
+    pub material: Material,
+}
+
+impl Object {
+    /// An object that casts and receives.
+    pub fn new(name: impl Into<String>, mesh: Mesh, material: Material) -> Self {
+        Self {
+            name: name.into(),
+            mesh: Arc::new(mesh),
+            casts: true,
+            receives: true,
+            material,
+        }
+    }
+
+    /// The same object, casting nothing (sheets such as floors).
+    pub fn receiver_only(mut self) -> Self {
+        self.casts = false;
+        self
+    }
+}
+
+/// Phong material, linear RGB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Diffuse reflectance, 0..1; also scales ambient light.
+    pub albedo: [f32; 3],
+    /// Specular reflectance, 0..1.
+    pub specular: [f32; 3],
+    /// Phong exponent, at least 1.
+    pub shininess: f32,
+}
+
+impl Material {
+    /// A matt material.
+    pub const fn matt(albedo: [f32; 3]) -> Self {
+        Self {
+            albedo,
+            specular: [0.0; 3],
+            shininess: 1.0,
+        }
+    }
+
+    /// A material with a white highlight of strength `specular`.
+    pub const fn glossy(albedo: [f32; 3], specular: f32, shininess: f32) -> Self {
+        Self {
+            albedo,
+            specular: [specular; 3],
+            shininess,
+        }
+    }
+}
+
+/// Something amiss in a scene that did not stop it from being made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneWarning {
+    /// Stable kebab-case code, e.g. `concave-polygons`.
+    pub code: &'static str,
+    /// How many times.
+    pub count: usize,
+    /// For people: what, where, and what to do about it.
+    pub message: String,
+}

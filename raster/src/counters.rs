@@ -1,0 +1,257 @@
+//! What the emulated GPU counts: logical traffic and events, independent of any
+//! hardware, execution tile, thread count or SIMD level.
+//!
+//! The rules are in `docs/rasterisation-rules.md`, §8. Everything is a `u64`
+//! that is only ever added to, so that sums over tiles equal sums over draws
+//! equal totals, in any order.
+
+use crate::format::Format;
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_TEXTURES};
+
+/// Accesses and bytes of one memory client.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Read accesses.
+    pub read_accesses: u64,
+    /// Bytes read.
+    pub read_bytes: u64,
+    /// Write accesses.
+    pub write_accesses: u64,
+    /// Bytes written.
+    pub write_bytes: u64,
+}
+
+impl Traffic {
+    fn add(&mut self, o: &Self) {
+        self.read_accesses += o.read_accesses;
+        self.read_bytes += o.read_bytes;
+        self.write_accesses += o.write_accesses;
+        self.write_bytes += o.write_bytes;
+    }
+
+    fn of(reads: u64, writes: u64, bytes: u64) -> Self {
+        Self {
+            read_accesses: reads,
+            read_bytes: reads * bytes,
+            write_accesses: writes,
+            write_bytes: writes * bytes,
+        }
+    }
+
+    /// Bytes in both directions.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.read_bytes + self.write_bytes
+    }
+}
+
+/// Access counts of the fixed-function clients, before bytes are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Accesses {
+    pub(crate) z_read: u64,
+    pub(crate) z_write: u64,
+    pub(crate) stencil_read: u64,
+    pub(crate) stencil_write: u64,
+    pub(crate) hiz_read: u64,
+    pub(crate) hiz_write: u64,
+    pub(crate) color_read: [u64; MAX_COLOR_ATTACHMENTS],
+    pub(crate) color_write: [u64; MAX_COLOR_ATTACHMENTS],
+    pub(crate) tex_fetch: [u64; MAX_TEXTURES],
+    pub(crate) tex_texel: [u64; MAX_TEXTURES],
+}
+
+/// Primitives on their way to the rasteriser.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PrimitiveCounters {
+    /// Vertices shaded (each referenced vertex once an instance).
+    pub vertex_shader_invocations: u64,
+    /// Primitives assembled.
+    pub input: u64,
+    /// Rejected for a position that is not finite.
+    pub non_finite: u64,
+    /// Entirely outside the view volume or guard band.
+    pub frustum_culled: u64,
+    /// Primitives that had to be clipped.
+    pub clipped: u64,
+    /// Triangles of no area after snapping.
+    pub degenerate: u64,
+    /// Triangles thrown away by their facing.
+    pub face_culled: u64,
+    /// Triangles set up for rasterisation.
+    pub rasterized: u64,
+    /// Triangles whose D24 slope exceeded the set-up's range and was limited.
+    pub depth_slope_limited: u64,
+}
+
+/// Fragments, by the stage that ended them. `generated` is the sum of all others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FragmentCounters {
+    /// Covered pixels, after scissor and clip planes.
+    pub generated: u64,
+    /// In blocks that were thrown away whole by zmin/zmax.
+    pub hiz_killed: u64,
+    /// Failed the depth-bounds test.
+    pub bounds_failed: u64,
+    /// Failed the stencil test.
+    pub stencil_failed: u64,
+    /// Failed the depth test.
+    pub depth_failed: u64,
+    /// Discarded by the fragment shader.
+    pub discarded: u64,
+    /// Passed everything.
+    pub written: u64,
+}
+
+/// zmin/zmax tests of (primitive, 8×8 block) pairs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TileCounters {
+    /// Pairs that were tested.
+    pub tested: u64,
+    /// Pairs thrown away whole.
+    pub culled: u64,
+    /// Pairs whose depth test was decided without reading depth, but not thrown away.
+    pub accepted: u64,
+}
+
+/// Events that would otherwise be silent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EventCounters {
+    /// Depth writes that stored what was there.
+    pub silent_z_writes: u64,
+    /// Stencil writes that stored what was there.
+    pub silent_stencil_writes: u64,
+    /// Colour writes (whole texels) that stored what was there, by attachment.
+    pub silent_color_writes: [u64; MAX_COLOR_ATTACHMENTS],
+    /// Channels whose blended value was limited to the format's range.
+    pub blend_saturated: [u64; MAX_COLOR_ATTACHMENTS],
+    /// Channels whose source value was limited to the format's range, NaN included.
+    pub source_clamped: [u64; MAX_COLOR_ATTACHMENTS],
+    /// NaN replaced before a store, in colour channels or shader depth.
+    pub nan_canonicalised: u64,
+    /// Shader depth outside 0..=1.
+    pub depth_clamped: u64,
+}
+
+/// Everything counted for one draw, or a sum over draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Primitives.
+    pub primitives: PrimitiveCounters,
+    /// Fragments.
+    pub fragments: FragmentCounters,
+    /// Fragment shader invocations, helper lanes left out.
+    pub fragment_shader_invocations: u64,
+    /// zmin/zmax tests.
+    pub tiles: TileCounters,
+    /// Saturation, silent writes, NaN.
+    pub events: EventCounters,
+    /// Traffic by client.
+    pub traffic: ClientTraffic,
+    pub(crate) accesses: Accesses,
+}
+
+/// Logical traffic by client.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClientTraffic {
+    /// Depth (aspect bytes: D24 = 3, D32F = 4).
+    pub z: Traffic,
+    /// Stencil (1 byte).
+    pub stencil: Traffic,
+    /// zmin/zmax entries (8 bytes).
+    pub hiz: Traffic,
+    /// Colour attachments.
+    pub color: [Traffic; MAX_COLOR_ATTACHMENTS],
+    /// Textures by slot: accesses are texels touched.
+    pub tex: [Traffic; MAX_TEXTURES],
+    /// API-level texture fetches by slot.
+    pub tex_fetches: [u64; MAX_TEXTURES],
+    /// Vertex data.
+    pub vertex: Traffic,
+    /// Indices (4 bytes).
+    pub index: Traffic,
+    /// Depth and stencil again, as accesses to the packed word that holds both
+    /// (D24S8: 4 bytes; D32F with S8: 8). Not part of [`ClientTraffic::total_bytes`].
+    pub packed_depth_stencil: Traffic,
+}
+
+impl ClientTraffic {
+    /// Client names and traffic, in a fixed order, clients without traffic left out.
+    #[must_use]
+    pub fn named(&self) -> Vec<(String, Traffic)> {
+        let mut all = vec![("z".to_owned(), self.z), ("stencil".to_owned(), self.stencil)];
+        all.extend(self.color.iter().enumerate().map(|(i, t)| (format!("color[{i}]"), *t)));
+        all.extend(self.tex.iter().enumerate().map(|(i, t)| (format!("tex[{i}]"), *t)));
+        all.push(("vertex".to_owned(), self.vertex));
+        all.push(("index".to_owned(), self.index));
+        all.push(("hiz".to_owned(), self.hiz));
+        all.retain(|(_, t)| *t != Traffic::default());
+        all
+    }
+
+    /// Bytes of all clients in both directions.
+    #[must_use]
+    pub fn total_bytes(&self) -> u64 {
+        self.named().iter().map(|(_, t)| t.bytes()).sum()
+    }
+}
+
+/// Sizes that turn accesses into bytes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct AccessSizes {
+    pub(crate) depth: Option<Format>,
+    pub(crate) color: [Option<Format>; MAX_COLOR_ATTACHMENTS],
+    pub(crate) tex: [Option<Format>; MAX_TEXTURES],
+}
+
+/// Bytes of a zmin/zmax entry.
+pub(crate) const HIZ_BYTES: u64 = 8;
+
+impl Counters {
+    /// Adds another draw's.
+    pub fn add(&mut self, o: &Self) {
+        macro_rules! sum { ($f:ident : $($g:ident),+) => { $( self.$f.$g += o.$f.$g; )+ }; }
+        macro_rules! sum_each { ($f:ident : $($g:ident),+) => {
+            $( self.$f.$g.iter_mut().zip(o.$f.$g).for_each(|(a, b)| *a += b); )+
+        }; }
+        sum!(primitives: vertex_shader_invocations, input, non_finite, frustum_culled, clipped, degenerate);
+        sum!(primitives: face_culled, rasterized, depth_slope_limited);
+        sum!(fragments: generated, hiz_killed, bounds_failed, stencil_failed, depth_failed, discarded, written);
+        sum!(tiles: tested, culled, accepted);
+        sum!(events: silent_z_writes, silent_stencil_writes, nan_canonicalised, depth_clamped);
+        sum_each!(events: silent_color_writes, blend_saturated, source_clamped);
+        sum!(accesses: z_read, z_write, stencil_read, stencil_write, hiz_read, hiz_write);
+        sum_each!(accesses: color_read, color_write, tex_fetch, tex_texel);
+        sum_each!(traffic: tex_fetches);
+        self.fragment_shader_invocations += o.fragment_shader_invocations;
+        let t = &mut self.traffic;
+        t.z.add(&o.traffic.z);
+        t.stencil.add(&o.traffic.stencil);
+        t.hiz.add(&o.traffic.hiz);
+        t.vertex.add(&o.traffic.vertex);
+        t.index.add(&o.traffic.index);
+        t.packed_depth_stencil.add(&o.traffic.packed_depth_stencil);
+        t.color.iter_mut().zip(&o.traffic.color).for_each(|(a, b)| a.add(b));
+        t.tex.iter_mut().zip(&o.traffic.tex).for_each(|(a, b)| a.add(b));
+    }
+
+    /// Turns access counts into traffic; vertex and index traffic are added by
+    /// the geometry stage.
+    pub(crate) fn settle(&mut self, sizes: &AccessSizes) {
+        let a = self.accesses;
+        let t = &mut self.traffic;
+        let depth_bytes = sizes.depth.map_or(0, Format::bytes);
+        t.z = Traffic::of(a.z_read, a.z_write, depth_bytes);
+        t.stencil = Traffic::of(a.stencil_read, a.stencil_write, 1);
+        t.hiz = Traffic::of(a.hiz_read, a.hiz_write, HIZ_BYTES);
+        let word = if sizes.depth == Some(Format::Depth32FloatStencil8) { 8 } else { 4 };
+        t.packed_depth_stencil = Traffic::of(a.z_read + a.stencil_read, a.z_write + a.stencil_write, word);
+        for (i, f) in sizes.color.iter().enumerate() {
+            t.color[i] = Traffic::of(a.color_read[i], a.color_write[i], f.map_or(0, Format::bytes));
+        }
+        for (i, f) in sizes.tex.iter().enumerate() {
+            t.tex[i] = Traffic::of(a.tex_texel[i], 0, f.map_or(0, Format::bytes));
+            t.tex_fetches[i] = a.tex_fetch[i];
+        }
+        self.accesses = Accesses::default();
+    }
+}

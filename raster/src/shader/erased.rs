@@ -1,0 +1,74 @@
+//! Shaders behind a pointer: one virtual call a batch or block, inside which
+//! everything is compiled for the level.
+
+use super::fragment::{Fragment, FragmentOutputs, FragmentShader, PACKETS, ShadeBlock};
+use super::vertex::{Vertex, VertexBatch, VertexOutput, VertexShader};
+use super::Interpolation;
+use crate::MAX_VARYINGS;
+use crate::simd::{F32, LANES, Lanes, SimdLevel, with_lanes};
+
+pub(crate) trait ErasedVertexShader: Send + Sync {
+    fn varyings(&self) -> &[Interpolation];
+    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_>);
+}
+
+pub(crate) trait ErasedFragmentShader: Send + Sync {
+    fn outputs(&self) -> FragmentOutputs;
+    fn shade_block(&self, level: SimdLevel, block: &mut ShadeBlock<'_>);
+}
+
+impl<V: VertexShader> ErasedVertexShader for V {
+    fn varyings(&self) -> &[Interpolation] {
+        VertexShader::varyings(self)
+    }
+
+    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_>) {
+        with_lanes!(level, l => shade_batch(self, l, batch, out));
+    }
+}
+
+impl<F: FragmentShader> ErasedFragmentShader for F {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentShader::outputs(self)
+    }
+
+    fn shade_block(&self, level: SimdLevel, block: &mut ShadeBlock<'_>) {
+        with_lanes!(level, l => shade_block(self, l, block));
+    }
+}
+
+#[inline(always)]
+fn shade_batch<L: Lanes, V: VertexShader>(
+    shader: &V,
+    l: L,
+    batch: &VertexBatch<'_>,
+    out: &mut VertexOutput<'_>,
+) {
+    let n = VertexShader::varyings(shader).len().min(MAX_VARYINGS);
+    let mut varyings = [[0.0f32; LANES]; MAX_VARYINGS];
+    for (k, chunk) in batch.vertices.chunks(LANES).enumerate() {
+        // The last packet repeats its first vertex, so that every lane is valid.
+        let mut ids = [chunk[0]; LANES];
+        ids[..chunk.len()].copy_from_slice(chunk);
+        let mut v = Vertex { l, batch, ids, position: [F32::splat(l, 0.0); 4], varyings: &mut varyings[..n] };
+        shader.shade(l, &mut v);
+        let at = k * LANES..(k + 1) * LANES;
+        for (slot, p) in out.position.iter_mut().zip(v.position) {
+            p.store((&mut slot[at.clone()]).try_into().expect("whole packets"));
+        }
+        for (i, v) in varyings[..n].iter().enumerate() {
+            let o = i * out.padded;
+            out.varyings[o + at.start..o + at.end].copy_from_slice(v);
+        }
+    }
+}
+
+#[inline(always)]
+fn shade_block<L: Lanes, F: FragmentShader>(shader: &F, l: L, block: &mut ShadeBlock<'_>) {
+    for packet in 0..PACKETS {
+        if (block.live >> (16 * packet)) as u16 != 0 {
+            let mut f = Fragment::new(l, block, packet);
+            shader.shade(l, &mut f);
+        }
+    }
+}

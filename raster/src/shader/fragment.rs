@@ -1,0 +1,245 @@
+//! The fragment stage over lanes.
+
+use crate::command::BoundTexture;
+use crate::simd::{F32, I32, LANES, Lanes, Mask, U32};
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_TEXTURES, MAX_VARYINGS};
+
+/// What a fragment shader may do; the tests that run before it depend on this.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FragmentOutputs {
+    /// It may discard fragments. Depth and stencil *writes* then wait for it.
+    pub discards: bool,
+    /// It writes depth. All tests then come after it, and block culling is off.
+    pub depth: bool,
+    /// Texture slots that it reads: `0..textures`.
+    pub textures: usize,
+}
+
+/// Computes colours, 16 fragments (an 8×2 strip, whole quads) at a time.
+pub trait FragmentShader: Send + Sync {
+    /// What the shader may do beyond writing colours.
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentOutputs::default()
+    }
+
+    /// Shades a packet of fragments. Mark it `#[inline(always)]`, and everything
+    /// it calls.
+    fn shade<L: Lanes>(&self, l: L, fragment: &mut Fragment<'_, L>);
+}
+
+/// Packets of an 8×8 block.
+pub(crate) const PACKETS: usize = 4;
+
+/// `base + gx·ix + gy·iy` of each varying over one 8×8 block; index
+/// [`MAX_VARYINGS`] is 1/w.
+#[derive(Clone)]
+pub(crate) struct VaryingPlanes {
+    pub(crate) base: [f32; MAX_VARYINGS + 1],
+    pub(crate) gx: [f32; MAX_VARYINGS + 1],
+    pub(crate) gy: [f32; MAX_VARYINGS + 1],
+    /// Bit i: varying i is divided by w.
+    pub(crate) perspective: u32,
+}
+
+/// What the fragments of a packet computed.
+#[derive(Clone)]
+#[repr(C, align(64))]
+pub(crate) struct PacketOutput {
+    pub(crate) color: [[[f32; LANES]; 4]; MAX_COLOR_ATTACHMENTS],
+    pub(crate) depth: [f32; LANES],
+    /// Lanes that were discarded.
+    pub(crate) discarded: u16,
+}
+
+impl PacketOutput {
+    pub(crate) const EMPTY: Self =
+        Self { color: [[[0.0; LANES]; 4]; MAX_COLOR_ATTACHMENTS], depth: [0.0; LANES], discarded: 0 };
+}
+
+/// Texture traffic of a shader, by slot.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ShaderEvents {
+    /// Texture look-ups of live lanes.
+    pub(crate) fetches: [u64; MAX_TEXTURES],
+    /// Texels that those look-ups read.
+    pub(crate) texels: [u64; MAX_TEXTURES],
+}
+
+/// One 8×8 block for a fragment shader.
+pub(crate) struct ShadeBlock<'a> {
+    /// Top-left pixel.
+    pub(crate) x: u32,
+    pub(crate) y: u32,
+    /// Bit `8·row + column`: the fragment is to be shaded.
+    pub(crate) live: u64,
+    pub(crate) planes: &'a VaryingPlanes,
+    /// Depth of all 64 fragments in 0..=1.
+    pub(crate) depth: &'a [f32; 64],
+    pub(crate) front_facing: bool,
+    pub(crate) primitive: u32,
+    pub(crate) textures: &'a [BoundTexture<'a>],
+    pub(crate) out: &'a mut [PacketOutput; PACKETS],
+    pub(crate) events: &'a mut ShaderEvents,
+}
+
+/// Inputs and outputs of 16 fragments.
+pub struct Fragment<'a, L: Lanes> {
+    pub(super) l: L,
+    pub(super) x: u32,
+    pub(super) y: u32,
+    pub(super) live: u16,
+    pub(super) planes: &'a VaryingPlanes,
+    pub(super) w: F32<L>,
+    pub(super) depth: &'a [f32; LANES],
+    pub(super) front_facing: bool,
+    pub(super) primitive: u32,
+    pub(crate) textures: &'a [BoundTexture<'a>],
+    pub(super) out: &'a mut PacketOutput,
+    pub(crate) events: &'a mut ShaderEvents,
+}
+
+/// Columns and rows of the lanes of a packet.
+const IX: [f32; LANES] = [0., 1., 2., 3., 4., 5., 6., 7., 0., 1., 2., 3., 4., 5., 6., 7.];
+const IY: [f32; LANES] = [0., 0., 0., 0., 0., 0., 0., 0., 1., 1., 1., 1., 1., 1., 1., 1.];
+
+impl<'a, L: Lanes> Fragment<'a, L> {
+    #[inline(always)]
+    pub(super) fn new(l: L, b: &'a mut ShadeBlock<'_>, packet: usize) -> Fragment<'a, L> {
+        let live = (b.live >> (16 * packet)) as u16;
+        let out = &mut b.out[packet];
+        out.discarded = 0;
+        let depth: &[f32; LANES] = b.depth[16 * packet..16 * packet + 16].try_into().expect("16 of 64");
+        let mut f = Fragment {
+            l,
+            x: b.x,
+            y: b.y + 2 * packet as u32,
+            live,
+            planes: b.planes,
+            w: F32::splat(l, 1.0),
+            depth,
+            front_facing: b.front_facing,
+            primitive: b.primitive,
+            textures: b.textures,
+            out,
+            events: b.events,
+        };
+        if b.planes.perspective != 0 {
+            f.w = f.plane(MAX_VARYINGS).recip();
+        }
+        f
+    }
+
+    /// `fl(fl(base + fl(gx·ix)) + fl(gy·iy))`.
+    #[inline(always)]
+    fn plane(&self, i: usize) -> F32<L> {
+        let row = F32::splat(self.l, (self.y % 8) as f32) + F32::from_array(self.l, &IY);
+        let along = F32::from_array(self.l, &IX) * self.planes.gx[i];
+        let down = row * self.planes.gy[i];
+        (F32::splat(self.l, self.planes.base[i]) + along) + down
+    }
+
+    /// The level's token.
+    #[inline(always)]
+    pub fn lanes(&self) -> L {
+        self.l
+    }
+
+    /// Varying `i`, interpolated as the vertex shader declared; 0 beyond.
+    #[inline(always)]
+    pub fn varying(&self, i: usize) -> F32<L> {
+        if i >= MAX_VARYINGS {
+            return F32::splat(self.l, 0.0);
+        }
+        let v = self.plane(i);
+        if self.planes.perspective >> i & 1 != 0 { v * self.w } else { v }
+    }
+
+    /// Clip-space w of each fragment; 1 where no varying is interpolated with perspective.
+    #[inline(always)]
+    pub fn w(&self) -> F32<L> {
+        self.w
+    }
+
+    /// Pixel centres, x to the right.
+    #[inline(always)]
+    pub fn x(&self) -> F32<L> {
+        F32::from_array(self.l, &IX) + (self.x as f32 + 0.5)
+    }
+
+    /// Pixel centres, y downwards.
+    #[inline(always)]
+    pub fn y(&self) -> F32<L> {
+        F32::from_array(self.l, &IY) + (self.y as f32 + 0.5)
+    }
+
+    /// Fragment depth in 0..=1.
+    #[inline(always)]
+    pub fn depth(&self) -> F32<L> {
+        F32::from_array(self.l, self.depth)
+    }
+
+    /// Whether the primitive faces the viewer.
+    #[inline(always)]
+    pub fn front_facing(&self) -> bool {
+        self.front_facing
+    }
+
+    /// Number of the primitive in its draw.
+    #[inline(always)]
+    pub fn primitive_index(&self) -> u32 {
+        self.primitive
+    }
+
+    /// Lanes that are fragments; the others are helpers for derivatives.
+    #[inline(always)]
+    pub fn live(&self) -> Mask<L> {
+        Mask::from_bits(self.l, self.live)
+    }
+
+    /// Number of live lanes that are not discarded so far.
+    #[inline(always)]
+    pub(crate) fn live_count(&self) -> u32 {
+        (self.live & !self.out.discarded).count_ones()
+    }
+
+    /// Sets all four channels of colour attachment `i`.
+    #[inline(always)]
+    pub fn set_color(&mut self, i: usize, rgba: [F32<L>; 4]) {
+        if let Some(c) = self.out.color.get_mut(i) {
+            for (slot, v) in c.iter_mut().zip(rgba) {
+                v.store(slot);
+            }
+        }
+    }
+
+    /// Sets the value of an `R32Uint` colour attachment.
+    #[inline(always)]
+    pub fn set_color_uint(&mut self, i: usize, v: U32<L>) {
+        let bits = v.to_f32_bits();
+        self.set_color(i, [bits; 4]);
+    }
+
+    /// Sets the depth; only where the shader declared it.
+    #[inline(always)]
+    pub fn set_depth(&mut self, depth: F32<L>) {
+        depth.store(&mut self.out.depth);
+    }
+
+    /// Discards the lanes of the mask; only where the shader declared it.
+    #[inline(always)]
+    pub fn discard(&mut self, mask: Mask<L>) {
+        self.out.discarded |= mask.bits();
+    }
+
+    /// Integer pixel column of each lane.
+    #[inline(always)]
+    pub fn column(&self) -> I32<L> {
+        I32::splat(self.l, self.x as i32) + I32::from_array(self.l, &[0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7])
+    }
+
+    /// Integer pixel row of each lane.
+    #[inline(always)]
+    pub fn row(&self) -> I32<L> {
+        I32::splat(self.l, self.y as i32) + I32::from_array(self.l, &[0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1])
+    }
+}

@@ -1,0 +1,54 @@
+//! Shaders as Rust code, in two tiers.
+//!
+//! *Lanes*: implement [`VertexShader`] or [`FragmentShader`] for a struct that
+//! holds the uniforms; the body is generic over [`crate::Lanes`] and runs 16
+//! vertices or fragments at a time at the machine's SIMD level. *One at a time*:
+//! [`per_vertex`] and [`per_fragment`] take an ordinary closure that sees a
+//! single vertex or fragment; slower, and the way to a first shader. Both tiers
+//! give the same bits for the same arithmetic.
+
+mod erased;
+mod fragment;
+mod scalar;
+mod vertex;
+
+pub(crate) use erased::{ErasedFragmentShader, ErasedVertexShader};
+pub use fragment::{Fragment, FragmentOutputs, FragmentShader};
+pub(crate) use fragment::{PACKETS, PacketOutput, ShadeBlock, ShaderEvents, VaryingPlanes};
+pub use scalar::{ScalarFragment, ScalarFragmentOutput, ScalarVertex, ScalarVertexOutput, per_fragment, per_vertex};
+pub(crate) use vertex::{VertexBatch, VertexOutput};
+pub use vertex::{Vertex, VertexShader};
+
+use std::sync::Arc;
+
+/// How a varying is interpolated over a primitive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Linear in clip space (divided by w).
+    #[default]
+    Perspective,
+    /// Linear on the screen.
+    Linear,
+    /// The value of the primitive's first vertex.
+    Flat,
+}
+
+/// A vertex shader ready for a render pipeline.
+#[derive(Clone)]
+pub struct VertexStage(pub(crate) Arc<dyn ErasedVertexShader>);
+
+impl<V: VertexShader + 'static> From<V> for VertexStage {
+    fn from(shader: V) -> Self {
+        Self(Arc::new(shader))
+    }
+}
+
+/// A fragment shader ready for a render pipeline.
+#[derive(Clone)]
+pub struct FragmentStage(pub(crate) Arc<dyn ErasedFragmentShader>);
+
+impl<F: FragmentShader + 'static> From<F> for FragmentStage {
+    fn from(shader: F) -> Self {
+        Self(Arc::new(shader))
+    }
+}

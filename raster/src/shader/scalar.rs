@@ -1,0 +1,165 @@
+//! The simple tier: closures that see one vertex or one fragment.
+
+use super::fragment::{Fragment, FragmentOutputs, FragmentShader};
+use super::vertex::{Vertex, VertexShader};
+use super::{FragmentStage, Interpolation, VertexStage};
+use crate::simd::{F32, LANES, Lanes, Mask};
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_VARYINGS};
+
+/// One vertex, for a closure given to [`per_vertex`].
+#[derive(Clone, Copy, Debug)]
+pub struct ScalarVertex<'a> {
+    /// The vertex's floats.
+    pub attributes: &'a [f32],
+    /// Its number in the vertex buffer.
+    pub vertex_index: u32,
+    /// The instance's number.
+    pub instance_index: u32,
+}
+
+/// What a vertex closure returns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScalarVertexOutput {
+    /// Clip-space position.
+    pub position: [f32; 4],
+    /// Varyings; those beyond the declared ones are ignored.
+    pub varyings: [f32; MAX_VARYINGS],
+}
+
+/// One fragment, for a closure given to [`per_fragment`].
+#[derive(Clone, Copy, Debug)]
+pub struct ScalarFragment {
+    /// Interpolated varyings; 0 beyond the declared ones.
+    pub varyings: [f32; MAX_VARYINGS],
+    /// Pixel column.
+    pub x: u32,
+    /// Pixel row, 0 on top.
+    pub y: u32,
+    /// Depth in 0..=1.
+    pub depth: f32,
+    /// Clip-space w.
+    pub w: f32,
+    /// Whether the primitive faces the viewer.
+    pub front_facing: bool,
+    /// Number of the primitive in its draw.
+    pub primitive_index: u32,
+}
+
+/// What a fragment closure returns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScalarFragmentOutput {
+    /// Colour attachments in order.
+    pub color: [[f32; 4]; MAX_COLOR_ATTACHMENTS],
+    /// Depth, where declared.
+    pub depth: f32,
+    /// Throw the fragment away, where declared.
+    pub discard: bool,
+}
+
+impl ScalarFragmentOutput {
+    /// Writes `rgba` to attachment 0.
+    #[must_use]
+    pub fn color(rgba: [f32; 4]) -> Self {
+        let mut o = Self::default();
+        o.color[0] = rgba;
+        o
+    }
+}
+
+/// A vertex shader from a closure that sees one vertex.
+pub fn per_vertex<F>(varyings: &[Interpolation], shade: F) -> VertexStage
+where
+    F: Fn(&ScalarVertex<'_>) -> ScalarVertexOutput + Send + Sync + 'static,
+{
+    PerVertex { varyings: varyings.to_vec(), shade }.into()
+}
+
+/// A fragment shader from a closure that sees one fragment.
+pub fn per_fragment<F>(outputs: FragmentOutputs, shade: F) -> FragmentStage
+where
+    F: Fn(&ScalarFragment) -> ScalarFragmentOutput + Send + Sync + 'static,
+{
+    PerFragment { outputs, shade }.into()
+}
+
+struct PerVertex<F> {
+    varyings: Vec<Interpolation>,
+    shade: F,
+}
+
+impl<F> VertexShader for PerVertex<F>
+where
+    F: Fn(&ScalarVertex<'_>) -> ScalarVertexOutput + Send + Sync,
+{
+    fn varyings(&self) -> &[Interpolation] {
+        &self.varyings
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        let mut position = [[0.0; LANES]; 4];
+        let ids = v.vertex_index();
+        for (lane, id) in ids.into_iter().enumerate() {
+            let at = id as usize * v.batch.stride;
+            let input = ScalarVertex {
+                attributes: &v.batch.data[at..at + v.batch.stride],
+                vertex_index: id,
+                instance_index: v.batch.instance,
+            };
+            let out = (self.shade)(&input);
+            for (p, o) in position.iter_mut().zip(out.position) {
+                p[lane] = o;
+            }
+            for (slot, o) in v.varyings.iter_mut().zip(out.varyings) {
+                slot[lane] = o;
+            }
+        }
+        v.set_position(position.map(|p| F32::from_array(l, &p)));
+    }
+}
+
+struct PerFragment<F> {
+    outputs: FragmentOutputs,
+    shade: F,
+}
+
+impl<F> FragmentShader for PerFragment<F>
+where
+    F: Fn(&ScalarFragment) -> ScalarFragmentOutput + Send + Sync,
+{
+    fn outputs(&self) -> FragmentOutputs {
+        self.outputs
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let mut varyings = [[0.0; LANES]; MAX_VARYINGS];
+        for (i, v) in varyings.iter_mut().enumerate() {
+            f.varying(i).store(v);
+        }
+        let (depth, w) = (f.depth().to_array(), f.w().to_array());
+        let (columns, rows) = (f.column().to_array(), f.row().to_array());
+        let mut discarded = 0u16;
+        for lane in (0..LANES).filter(|lane| f.live().bits() >> lane & 1 != 0).collect::<Vec<_>>() {
+            let out = (self.shade)(&ScalarFragment {
+                varyings: core::array::from_fn(|i| varyings[i][lane]),
+                x: columns[lane] as u32,
+                y: rows[lane] as u32,
+                depth: depth[lane],
+                w: w[lane],
+                front_facing: f.front_facing(),
+                primitive_index: f.primitive_index(),
+            });
+            f.out.depth[lane] = out.depth;
+            discarded |= u16::from(out.discard) << lane;
+            for (target, color) in f.out.color.iter_mut().zip(out.color) {
+                for (channel, c) in target.iter_mut().zip(color) {
+                    channel[lane] = c;
+                }
+            }
+        }
+        if self.outputs.discards {
+            f.discard(Mask::from_bits(l, discarded));
+        }
+    }
+}

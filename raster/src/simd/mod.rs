@@ -1,0 +1,58 @@
+//! The lane facade: one algorithm for every instruction set.
+//!
+//! All vector code of Gnomon is written against four types of
+//! [`LANES`] = 16 logical lanes, [`F32`], [`I32`], [`U32`] and [`Mask`], generic
+//! over [`Lanes`]. What is *absent* from them is the point: no fused
+//! multiply-add, no approximate reciprocal, no `min`/`max` with the NaN rules of
+//! one instruction set, no conversion whose out-of-range result depends on the
+//! CPU, no horizontal float sum. Whatever can be written with them gives the
+//! same bits at every [`SimdLevel`].
+//!
+//! The lanes of a packet are the pixels of an 8×2 strip of an 8×8 block:
+//! lane `i` is column `i % 8`, row `i / 8`, so that a packet holds four whole
+//! 2×2 quads and derivatives are lane permutations.
+
+mod float;
+mod int;
+mod level;
+mod mask;
+
+pub use float::F32;
+pub use int::{I32, U32};
+pub use level::{SimdLevel, UnknownSimdLevel};
+pub(crate) use level::with_lanes;
+pub use mask::Mask;
+
+use fearless_simd::Simd;
+
+/// Logical lanes of a packet, whatever the width of the machine's registers.
+pub const LANES: usize = 16;
+
+/// An instruction set to compute on, as a zero-sized proof that the CPU has it.
+///
+/// Every [`fearless_simd::Simd`] token is one. The indirection leaves room for
+/// *precision modes*: a wrapper whose [`Lanes::round`] rounds every arithmetic
+/// result to fp24 or fp16, as the target GPUs did, is one more instantiation.
+pub trait Lanes: Copy + Send + Sync + 'static {
+    /// The instruction set that does the arithmetic.
+    type Isa: Simd;
+
+    /// The proof token of the instruction set.
+    fn isa(self) -> Self::Isa;
+
+    /// What every float operation's result passes through; the identity for
+    /// full precision.
+    #[inline(always)]
+    fn round(self, v: fearless_simd::f32x16<Self::Isa>) -> fearless_simd::f32x16<Self::Isa> {
+        v
+    }
+}
+
+impl<S: Simd> Lanes for S {
+    type Isa = S;
+
+    #[inline(always)]
+    fn isa(self) -> S {
+        self
+    }
+}

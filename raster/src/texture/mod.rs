@@ -1,0 +1,10 @@
+//! Textures: block-linear storage shared by attachments and sampled images.
+
+pub(crate) mod layout;
+mod plane;
+mod resource;
+
+pub use layout::BLOCK;
+pub(crate) use layout::Layout;
+pub(crate) use plane::{Block, Block4, ColorBlocks, DepthPlane, HizEntry, Plane};
+pub use resource::{ColorTexel, Subresource, Texture, TextureDescriptor, TextureDimension, TextureId};

@@ -1,0 +1,118 @@
+//! Storage of one subresource: an aspect a plane, a plane in 8×8 blocks.
+
+use super::Layout;
+use crate::format::Format;
+
+/// 64 values of one block, row by row; a cache line or more of its own.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(crate) struct Block<T>(pub(crate) [T; 64]);
+
+/// Four channels of one block, each channel 64 values of its own.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(crate) struct Block4<T>(pub(crate) [[T; 64]; 4]);
+
+/// Colour values, by the size of a texel.
+#[derive(Clone)]
+pub(crate) enum ColorBlocks {
+    /// R8.
+    B8(Vec<Block<u8>>),
+    /// RG8 (red low), R16Sint, R16Float.
+    B16(Vec<Block<u16>>),
+    /// RGBA8 (red low), R32Float, R32Uint.
+    B32(Vec<Block<u32>>),
+    /// RGBA16Float.
+    B16x4(Vec<Block4<u16>>),
+    /// RGBA32Float.
+    B32x4(Vec<Block4<u32>>),
+}
+
+/// Smallest and largest depth of the pixels of a block that lie in the image;
+/// `min > max` says that it must be found again before use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct HizEntry {
+    pub(crate) min: i32,
+    pub(crate) max: i32,
+}
+
+impl HizEntry {
+    pub(crate) const STALE: Self = Self { min: 1, max: 0 };
+
+    pub(crate) fn is_stale(self) -> bool {
+        self.min > self.max
+    }
+}
+
+/// Depth and stencil of one subresource. Depth is kept as ordered non-negative
+/// integers: the D24 value, or the bits of a float in 0..=1.
+#[derive(Clone)]
+pub(crate) struct DepthPlane {
+    pub(crate) depth: Vec<Block<u32>>,
+    pub(crate) stencil: Vec<Block<u8>>,
+    pub(crate) hiz: Vec<HizEntry>,
+}
+
+/// One subresource.
+#[derive(Clone)]
+pub(crate) enum Plane {
+    Color(ColorBlocks),
+    Depth(DepthPlane),
+    /// Its storage is lent to a render pass that is being executed.
+    Lent,
+}
+
+impl Plane {
+    /// Zero colour, or depth 0 and stencil 0.
+    pub(crate) fn new(format: Format, layout: &Layout) -> Self {
+        let n = layout.blocks();
+        match format {
+            Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => Self::Depth(DepthPlane {
+                depth: vec![Block([0; 64]); n],
+                stencil: vec![Block([0; 64]); n],
+                hiz: vec![HizEntry { min: 0, max: 0 }; n],
+            }),
+            Format::R8Unorm => Self::Color(ColorBlocks::B8(vec![Block([0; 64]); n])),
+            Format::Rg8Unorm | Format::R16Sint | Format::R16Float => {
+                Self::Color(ColorBlocks::B16(vec![Block([0; 64]); n]))
+            }
+            Format::Rgba8Unorm | Format::R32Float | Format::R32Uint => {
+                Self::Color(ColorBlocks::B32(vec![Block([0; 64]); n]))
+            }
+            Format::Rgba16Float => Self::Color(ColorBlocks::B16x4(vec![Block4([[0; 64]; 4]); n])),
+            Format::Rgba32Float => Self::Color(ColorBlocks::B32x4(vec![Block4([[0; 64]; 4]); n])),
+        }
+    }
+}
+
+impl ColorBlocks {
+    /// Raw channels of a texel; unused ones are 0.
+    #[inline(always)]
+    pub(crate) fn get(&self, format: Format, (b, i): (usize, usize)) -> [u32; 4] {
+        match self {
+            Self::B8(v) => [u32::from(v[b].0[i]), 0, 0, 0],
+            Self::B16(v) if format == Format::Rg8Unorm => {
+                let t = u32::from(v[b].0[i]);
+                [t & 255, t >> 8, 0, 0]
+            }
+            Self::B16(v) => [u32::from(v[b].0[i]), 0, 0, 0],
+            Self::B32(v) if format == Format::Rgba8Unorm => v[b].0[i].to_le_bytes().map(u32::from),
+            Self::B32(v) => [v[b].0[i], 0, 0, 0],
+            Self::B16x4(v) => core::array::from_fn(|c| u32::from(v[b].0[c][i])),
+            Self::B32x4(v) => core::array::from_fn(|c| v[b].0[c][i]),
+        }
+    }
+
+    /// Stores raw channels.
+    pub(crate) fn set(&mut self, format: Format, (b, i): (usize, usize), t: [u32; 4]) {
+        match self {
+            Self::B8(v) => v[b].0[i] = t[0] as u8,
+            Self::B16(v) if format == Format::Rg8Unorm => v[b].0[i] = (t[0] & 255 | t[1] << 8) as u16,
+            Self::B16(v) => v[b].0[i] = t[0] as u16,
+            Self::B32(v) if format == Format::Rgba8Unorm => v[b].0[i] = u32::from_le_bytes(t.map(|c| c as u8)),
+            Self::B32(v) => v[b].0[i] = t[0],
+            Self::B16x4(v) => (0..4).for_each(|c| v[b].0[c][i] = t[c] as u16),
+            Self::B32x4(v) => (0..4).for_each(|c| v[b].0[c][i] = t[c]),
+        }
+    }
+}

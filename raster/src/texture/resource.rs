@@ -1,0 +1,322 @@
+//! Textures as the API shows them.
+
+use super::plane::{ColorBlocks, DepthPlane, Plane};
+use super::{HizEntry, Layout};
+use crate::MAX_TEXTURE_SIZE;
+use crate::error::Error;
+use crate::format::{self, Format};
+
+/// Names a texture of a [`crate::Gpu`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TextureId(pub(crate) u32);
+
+/// Shape of a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TextureDimension {
+    /// width × 1.
+    D1,
+    /// width × height.
+    D2,
+    /// width × height × depth, filtered in all three.
+    D3,
+    /// Six square faces: +x, −x, +y, −y, +z, −z.
+    Cube,
+}
+
+/// What to create.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureDescriptor {
+    /// Shown in errors and reports.
+    pub label: String,
+    /// Shape.
+    pub dimension: TextureDimension,
+    /// Texel format.
+    pub format: Format,
+    /// Width, height, depth of level 0 in texels; the third is 1 but for `D3`.
+    pub size: [u32; 3],
+    /// Mip levels, at least 1; level k has sizes `max(1, size >> k)`.
+    pub mip_levels: u32,
+}
+
+impl TextureDescriptor {
+    /// A two-dimensional image with one level.
+    #[must_use]
+    pub fn d2(label: &str, format: Format, width: u32, height: u32) -> Self {
+        Self {
+            label: label.to_owned(),
+            dimension: TextureDimension::D2,
+            format,
+            size: [width, height, 1],
+            mip_levels: 1,
+        }
+    }
+}
+
+/// One two-dimensional image of a texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Subresource {
+    /// Mip level.
+    pub mip: u32,
+    /// Cube face, or slice of a 3D texture.
+    pub layer: u32,
+}
+
+/// A decoded colour texel; channels that the format lacks are 0, alpha 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorTexel(pub [f32; 4]);
+
+/// A texture and its storage.
+#[derive(Clone)]
+pub struct Texture {
+    pub(crate) desc: TextureDescriptor,
+    /// `layouts[mip]`.
+    pub(crate) layouts: Vec<Layout>,
+    /// `planes[mip][layer]`.
+    pub(crate) planes: Vec<Vec<Plane>>,
+}
+
+impl Texture {
+    pub(crate) fn new(desc: &TextureDescriptor) -> Result<Self, Error> {
+        validate(desc)?;
+        let mut layouts = Vec::new();
+        let mut planes = Vec::new();
+        for mip in 0..desc.mip_levels {
+            let [w, h, d] = mip_size(desc, mip);
+            let layout = Layout::new(w, h);
+            let layers = if desc.dimension == TextureDimension::Cube { 6 } else { d };
+            layouts.push(layout);
+            planes.push((0..layers).map(|_| Plane::new(desc.format, &layout)).collect());
+        }
+        Ok(Self { desc: desc.clone(), layouts, planes })
+    }
+
+    /// What it was created from.
+    #[must_use]
+    pub fn descriptor(&self) -> &TextureDescriptor {
+        &self.desc
+    }
+
+    /// Width, height and depth (or 1) of level `mip` in texels.
+    #[must_use]
+    pub fn mip_size(&self, mip: u32) -> [u32; 3] {
+        mip_size(&self.desc, mip)
+    }
+
+    pub(crate) fn check_subresource(&self, s: Subresource) -> Result<(), Error> {
+        let ok = self.planes.get(s.mip as usize).is_some_and(|l| (s.layer as usize) < l.len());
+        if ok { Ok(()) } else { Err(Error::NoSuchSubresource { texture: self.desc.label.clone(), subresource: s }) }
+    }
+
+    pub(crate) fn color(&self, s: Subresource) -> Result<&ColorBlocks, Error> {
+        self.check_subresource(s)?;
+        match &self.planes[s.mip as usize][s.layer as usize] {
+            Plane::Color(c) => Ok(c),
+            _ => Err(self.wrong_aspect("color")),
+        }
+    }
+
+    pub(crate) fn depth(&self, s: Subresource) -> Result<&DepthPlane, Error> {
+        self.check_subresource(s)?;
+        match &self.planes[s.mip as usize][s.layer as usize] {
+            Plane::Depth(d) => Ok(d),
+            _ => Err(self.wrong_aspect("depth")),
+        }
+    }
+
+    fn wrong_aspect(&self, wanted: &'static str) -> Error {
+        Error::WrongAspect { texture: self.desc.label.clone(), format: self.desc.format, wanted }
+    }
+
+    /// Raw channel bits of every texel of a colour image, row by row from the
+    /// top: unorm bytes, half bits, float bits or integers.
+    ///
+    /// # Errors
+    /// Where the subresource does not exist or is not colour.
+    pub fn read_raw(&self, s: Subresource) -> Result<Vec<[u32; 4]>, Error> {
+        let blocks = self.color(s)?;
+        let l = &self.layouts[s.mip as usize];
+        Ok(pixels(l).map(|(x, y)| blocks.get(self.desc.format, l.locate(x, y))).collect())
+    }
+
+    /// Decoded texels, row by row from the top. Integers become floats.
+    ///
+    /// # Errors
+    /// Where the subresource does not exist or is not colour.
+    pub fn read_color(&self, s: Subresource) -> Result<Vec<ColorTexel>, Error> {
+        Ok(self.read_raw(s)?.into_iter().map(|t| decode(self.desc.format, t)).collect())
+    }
+
+    /// Depth of every pixel in 0..=1, row by row from the top.
+    ///
+    /// # Errors
+    /// Where the subresource does not exist or has no depth.
+    pub fn read_depth(&self, s: Subresource) -> Result<Vec<f32>, Error> {
+        let float = self.desc.format == Format::Depth32FloatStencil8;
+        let to_f32 = |b: u32| if float { f32::from_bits(b) } else { format::f32_from_d24(b) };
+        Ok(self.read_depth_bits(s)?.into_iter().map(to_f32).collect())
+    }
+
+    /// Stored depth of every pixel: the D24 integer, or the float's bits.
+    ///
+    /// # Errors
+    /// Where the subresource does not exist or has no depth.
+    pub fn read_depth_bits(&self, s: Subresource) -> Result<Vec<u32>, Error> {
+        let plane = self.depth(s)?;
+        let l = &self.layouts[s.mip as usize];
+        Ok(pixels(l)
+            .map(|(x, y)| {
+                let (b, i) = l.locate(x, y);
+                plane.depth[b].0[i]
+            })
+            .collect())
+    }
+
+    /// Stencil of every pixel, row by row from the top.
+    ///
+    /// # Errors
+    /// Where the subresource does not exist or has no stencil.
+    pub fn read_stencil(&self, s: Subresource) -> Result<Vec<u8>, Error> {
+        let plane = self.depth(s)?;
+        let l = &self.layouts[s.mip as usize];
+        Ok(pixels(l)
+            .map(|(x, y)| {
+                let (b, i) = l.locate(x, y);
+                plane.stencil[b].0[i]
+            })
+            .collect())
+    }
+
+    /// Replaces a colour image; values are converted as a shader's output would
+    /// be. `texels` are rows from the top.
+    ///
+    /// # Errors
+    /// Where the subresource does not exist, is not colour, or `texels` has the
+    /// wrong length.
+    pub fn write_color(&mut self, s: Subresource, texels: &[[f32; 4]]) -> Result<(), Error> {
+        let f = self.desc.format;
+        self.write_with(s, texels.len(), |i| encode(f, texels[i]))
+    }
+
+    /// Replaces a colour image by raw channel bits, as [`Texture::read_raw`] gives them.
+    ///
+    /// # Errors
+    /// As [`Texture::write_color`].
+    pub fn write_raw(&mut self, s: Subresource, texels: &[[u32; 4]]) -> Result<(), Error> {
+        self.write_with(s, texels.len(), |i| texels[i])
+    }
+
+    fn write_with(&mut self, s: Subresource, len: usize, texel: impl Fn(usize) -> [u32; 4]) -> Result<(), Error> {
+        self.color(s)?;
+        let l = self.layouts[s.mip as usize];
+        let expected = l.width as usize * l.height as usize;
+        if len != expected {
+            return Err(Error::TexelCount { texture: self.desc.label.clone(), given: len, expected });
+        }
+        let Plane::Color(blocks) = &mut self.planes[s.mip as usize][s.layer as usize] else { unreachable!("checked") };
+        for (i, (x, y)) in pixels(&l).enumerate() {
+            blocks.set(self.desc.format, l.locate(x, y), texel(i));
+        }
+        Ok(())
+    }
+
+    /// Replaces depth (0..=1) and stencil of an image, rows from the top.
+    ///
+    /// # Errors
+    /// Where the subresource does not exist or has no depth, or a length is wrong.
+    pub fn write_depth_stencil(&mut self, s: Subresource, depth: &[f32], stencil: &[u8]) -> Result<(), Error> {
+        self.depth(s)?;
+        let l = self.layouts[s.mip as usize];
+        let expected = l.width as usize * l.height as usize;
+        for given in [depth.len(), stencil.len()] {
+            if given != expected {
+                return Err(Error::TexelCount { texture: self.desc.label.clone(), given, expected });
+            }
+        }
+        let f = self.desc.format;
+        let Plane::Depth(plane) = &mut self.planes[s.mip as usize][s.layer as usize] else { unreachable!("checked") };
+        for (i, (x, y)) in pixels(&l).enumerate() {
+            let (b, k) = l.locate(x, y);
+            plane.depth[b].0[k] = encode_depth(f, depth[i]);
+            plane.stencil[b].0[k] = stencil[i];
+            plane.hiz[b] = HizEntry::STALE;
+        }
+        Ok(())
+    }
+}
+
+/// Depth in 0..=1 as a stored integer; NaN and −0 become 0.
+pub(crate) fn encode_depth(f: Format, v: f32) -> u32 {
+    if f == Format::Depth24Stencil8 {
+        return format::d24_from_f32(v);
+    }
+    let c = if v > 0.0 { v } else { 0.0 };
+    (if c < 1.0 { c } else { 1.0 }).to_bits()
+}
+
+/// A shader's output as raw channels.
+pub(crate) fn encode(f: Format, v: [f32; 4]) -> [u32; 4] {
+    match f {
+        Format::R8Unorm => [u32::from(format::unorm8_from_f32(v[0])), 0, 0, 0],
+        Format::Rg8Unorm => {
+            [u32::from(format::unorm8_from_f32(v[0])), u32::from(format::unorm8_from_f32(v[1])), 0, 0]
+        }
+        Format::Rgba8Unorm => v.map(|c| u32::from(format::unorm8_from_f32(c))),
+        Format::R16Sint => [u32::from(format::i16_from_f32(v[0]) as u16), 0, 0, 0],
+        Format::R16Float => [u32::from(format::f16_from_f32(v[0])), 0, 0, 0],
+        Format::Rgba16Float => v.map(|c| u32::from(format::f16_from_f32(c))),
+        Format::R32Float => [format::canonical_nan(v[0]).to_bits(), 0, 0, 0],
+        Format::Rgba32Float => v.map(|c| format::canonical_nan(c).to_bits()),
+        Format::R32Uint => [v[0].to_bits(), 0, 0, 0],
+        Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => [0; 4],
+    }
+}
+
+/// Raw channels as floats; missing colour channels are 0, missing alpha 1.
+pub(crate) fn decode(f: Format, t: [u32; 4]) -> ColorTexel {
+    let u = |c: u32| format::f32_from_unorm8(c as u8);
+    let h = |c: u32| format::f32_from_f16(c as u16);
+    ColorTexel(match f {
+        Format::R8Unorm => [u(t[0]), 0.0, 0.0, 1.0],
+        Format::Rg8Unorm => [u(t[0]), u(t[1]), 0.0, 1.0],
+        Format::Rgba8Unorm => t.map(u),
+        Format::R16Sint => [f32::from(t[0] as u16 as i16), 0.0, 0.0, 1.0],
+        Format::R16Float => [h(t[0]), 0.0, 0.0, 1.0],
+        Format::Rgba16Float => t.map(h),
+        Format::R32Float => [f32::from_bits(t[0]), 0.0, 0.0, 1.0],
+        Format::Rgba32Float => t.map(f32::from_bits),
+        Format::R32Uint => [t[0] as f32, 0.0, 0.0, 1.0],
+        Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => [0.0; 4],
+    })
+}
+
+fn pixels(l: &Layout) -> impl Iterator<Item = (u32, u32)> + use<> {
+    let (w, h) = (l.width, l.height);
+    (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
+}
+
+fn mip_size(desc: &TextureDescriptor, mip: u32) -> [u32; 3] {
+    desc.size.map(|s| (s >> mip.min(31)).max(1))
+}
+
+fn validate(desc: &TextureDescriptor) -> Result<(), Error> {
+    let [w, h, d] = desc.size;
+    let bad = |reason: String| Err(Error::InvalidTexture { texture: desc.label.clone(), size: desc.size, reason });
+    if w == 0 || h == 0 || d == 0 {
+        return bad("every size must be at least 1".into());
+    }
+    if w.max(h).max(d) > MAX_TEXTURE_SIZE {
+        return bad(format!("the limit is {MAX_TEXTURE_SIZE}"));
+    }
+    let largest = if desc.dimension == TextureDimension::D3 { w.max(h).max(d) } else { w.max(h) };
+    let levels = 32 - largest.leading_zeros();
+    if desc.mip_levels == 0 || desc.mip_levels > levels {
+        return bad(format!("{} mip levels asked for, valid is 1..={levels}", desc.mip_levels));
+    }
+    match desc.dimension {
+        TextureDimension::D1 if h != 1 || d != 1 => bad("a 1D texture has height and depth 1".into()),
+        TextureDimension::D2 if d != 1 => bad("a 2D texture has depth 1".into()),
+        TextureDimension::Cube if w != h || d != 1 => bad("a cube map has square faces and depth 1".into()),
+        TextureDimension::D3 if desc.format.is_depth_stencil() => bad("a 3D texture cannot be depth-stencil".into()),
+        _ => Ok(()),
+    }
+}

@@ -29,9 +29,11 @@
 //! ```
 
 pub mod adjacency;
+pub mod caster;
 pub mod error;
 pub mod light;
 pub mod mesh;
+pub mod oracle;
 pub mod scene;
 pub mod shape;
 pub mod silhouette;

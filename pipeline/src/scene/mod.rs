@@ -32,6 +32,20 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A nameless scene with a dim ambient light on a dark background.
+    pub fn new(camera: Camera, lights: Vec<Light>, objects: Vec<Object>) -> Self {
+        Self {
+            name: String::new(),
+            camera,
+            lights,
+            objects,
+            ambient: [0.15; 3],
+            background: [0.05, 0.06, 0.08],
+            size: None,
+            warnings: Vec::new(),
+        }
+    }
+
     /// Objects that cast shadows, in drawing order.
     pub fn casters(&self) -> impl Iterator<Item = &Object> {
         self.objects.iter().filter(|o| o.casts)

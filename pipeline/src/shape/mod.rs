@@ -4,17 +4,23 @@
 //! outside; the generators that the peers share (`plane`, `cylinder`,
 //! `icosphere`, `terrain`, `torus_knot`) keep their vertex and triangle order.
 
+mod bevelled_plate;
 mod capsule;
+mod creature;
 mod cuboid;
 mod cylinder;
+mod diamond_square;
 mod icosphere;
 mod plane;
 mod terrain;
 mod torus_knot;
 
+pub use bevelled_plate::bevelled_plate;
 pub use capsule::capsule;
+pub use creature::{CREATURE_PARTS, creature, placed_creature};
 pub use cuboid::cuboid;
 pub use cylinder::cylinder;
+pub use diamond_square::diamond_square;
 pub use icosphere::icosphere;
 pub use plane::plane;
 pub use terrain::{Terrain, terrain};
@@ -121,6 +127,9 @@ mod tests {
             12,
             4,
         ));
+        check_closed_and_outward(torus_knot(1, 0, 1.0, 0.0, 0.3, 24, 12, DVec3::ZERO));
+        check_closed_and_outward(bevelled_plate(0.3, 2.0, 0.01, 1.5));
+        creature(0.7).into_iter().for_each(check_closed_and_outward);
         check_closed_and_outward(torus_knot(2, 3, 1.0, 0.4, 0.18, 64, 8, DVec3::ZERO));
     }
 

@@ -3,10 +3,21 @@
 //! One file per family. To add a scene, write its file and add one line to
 //! [`SCENES`]; every list, suite and message picks it up from there.
 
+mod adversarial;
+mod columns;
+mod creature;
+mod cylinder;
+mod demo;
+mod fractal;
+mod palette;
+mod parallel_plates;
 mod peers;
+mod spheres;
 
 use super::Scene;
 use crate::error::UnknownScene;
+
+pub use parallel_plates::PLATES;
 
 /// A built-in scene: its name, one line about it, and how it is made.
 #[derive(Clone, Copy, Debug)]
@@ -28,22 +39,26 @@ impl BuiltinScene {
 }
 
 /// All built-in scenes, in the order in which they are listed.
+#[rustfmt::skip] // one line per scene
 pub const SCENES: &[BuiltinScene] = &[
-    entry(
-        "peer-a",
-        "64-gon cylinder over a plane, to the peers' numbers",
-        peers::a,
-    ),
-    entry(
-        "peer-b",
-        "27 spheres of 1280 triangles over a plane, to the peers' numbers",
-        peers::b,
-    ),
-    entry(
-        "peer-c",
-        "torus knot over a 100,352-triangle terrain, to the peers' numbers",
-        peers::c,
-    ),
+    entry("demo", "the default: creature, columns, torus knot and spheres on a ground plane", demo::scene),
+    entry("cylinder", "32-gon cylinder standing on a floor", cylinder::scene),
+    entry("spheres", "27 spheres in a 3x3x3 lattice over a floor", spheres::scene),
+    entry("fractal", "two solids floating over a 100,352-triangle fractal landscape", fractal::scene),
+    entry("columns", "5x4 columns with boxes on top, seen from low", columns::scene),
+    entry("parallel-plates", "square plate parallel to light and floor: soft shadows in closed form", parallel_plates::scene),
+    entry("creature", "biped of 15 overlapping closed parts", creature::scene),
+    entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
+    entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),
+    entry("adversarial-near-plane", "the near plane cuts a side of a volume: z-pass fails", adversarial::near_plane),
+    entry("adversarial-nested-300", "300 nested volumes: an 8-bit stencil wraps, 256 alias to lit", adversarial::nested_300),
+    entry("adversarial-tiny", "a small still life, coordinates x 1e-4", adversarial::tiny),
+    entry("adversarial-huge", "a small still life, coordinates x 1e4", adversarial::huge),
+    entry("adversarial-offset", "a small still life, 1e5 away from the origin", adversarial::offset),
+    entry("adversarial-slivers", "needles, a 1024-gon disc and thin plates", adversarial::slivers),
+    entry("peer-a", "64-gon cylinder over a plane, to the peers' numbers", peers::a),
+    entry("peer-b", "27 spheres of 1280 triangles over a plane, to the peers' numbers", peers::b),
+    entry("peer-c", "torus knot over a 100,352-triangle terrain, to the peers' numbers", peers::c),
 ];
 
 const fn entry(

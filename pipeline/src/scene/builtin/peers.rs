@@ -75,19 +75,14 @@ fn scene(
         let built = shape.snapped().into_mesh(shading);
         built.expect("the peers' numbers are finite")
     };
-    Scene {
-        name: String::new(),
+    Scene::new(
         camera,
-        lights: vec![Light::horizontal_square(light_centre, 1.0)],
-        objects: vec![
+        vec![Light::horizontal_square(light_centre, 1.0)],
+        vec![
             Object::new("receiver", mesh(receiver, Shading::Smooth), RECEIVER).receiver_only(),
             Object::new("caster", mesh(caster, caster_shading), CASTER),
         ],
-        ambient: [0.15; 3],
-        background: [0.05, 0.06, 0.08],
-        size: None,
-        warnings: Vec::new(),
-    }
+    )
 }
 
 #[cfg(test)]

@@ -64,7 +64,7 @@ pub struct RefusedCaster {
     /// Name of the object.
     pub object: String,
     /// What is wrong with its mesh.
-    pub report: ClosednessReport,
+    pub report: Box<ClosednessReport>,
 }
 
 /// Which triangles of a caster count as blockers, one each.
@@ -102,7 +102,7 @@ impl Caster {
         }
         Err(RefusedCaster {
             object: object.name.clone(),
-            report: caster.report,
+            report: Box::new(caster.report),
         })
     }
 

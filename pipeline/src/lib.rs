@@ -33,6 +33,7 @@ pub mod caster;
 pub mod error;
 pub mod light;
 pub mod mesh;
+pub mod obj;
 pub mod oracle;
 pub mod scene;
 pub mod shape;

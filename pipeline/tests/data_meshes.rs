@@ -1,0 +1,83 @@
+//! The meshes of the shared data folder against the table in its README:
+//! vertices, faces, closedness, and the defects of those that are not closed.
+//! Passes with a note where the folder is absent.
+
+use std::path::PathBuf;
+
+use gnomon_pipeline::adjacency::EdgeAdjacency;
+use gnomon_pipeline::mesh::Shading;
+use gnomon_pipeline::obj;
+
+/// `$GNOMON_DATA`, or `shared/data` beside the workspace.
+fn data_folder() -> Option<PathBuf> {
+    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    let folder = std::env::var_os("GNOMON_DATA").map_or_else(beside, PathBuf::from);
+    folder.join("README.md").exists().then_some(folder)
+}
+
+/// A row of the table.
+struct Row {
+    file: String,
+    vertices: usize,
+    faces: usize,
+    /// Boundary, over-shared, flipped; zeros for closed meshes.
+    defects: [usize; 3],
+}
+
+fn numbers(text: &str) -> Vec<usize> {
+    text.replace(',', "")
+        .split(|c: char| !c.is_ascii_digit())
+        .filter_map(|n| n.parse().ok())
+        .collect()
+}
+
+fn row(line: &str) -> Option<Row> {
+    let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+    let file = cells.get(1)?.strip_prefix('`')?.strip_suffix('`')?;
+    let [vertices, faces] = numbers(cells.get(3)?)[..] else {
+        return None;
+    };
+    let defects = match cells.get(4)?.split_once("open") {
+        Some((_, open)) => numbers(open).try_into().ok()?,
+        None => [0; 3],
+    };
+    file.ends_with(".obj").then(|| Row {
+        file: file.to_owned(),
+        vertices,
+        faces,
+        defects,
+    })
+}
+
+#[test]
+fn meshes_are_as_their_table_says() {
+    let Some(folder) = data_folder() else {
+        eprintln!("no data folder: nothing compared");
+        return;
+    };
+    let table = std::fs::read_to_string(folder.join("README.md")).unwrap();
+    let rows: Vec<Row> = table.lines().filter_map(row).collect();
+    assert!(rows.len() >= 30, "only {} rows of the table understood", rows.len());
+    assert!(rows.iter().any(|r| r.defects != [0; 3]), "no negative control");
+    for expected in rows {
+        check(&folder.join("meshes"), &expected);
+    }
+}
+
+fn check(folder: &std::path::Path, expected: &Row) {
+    let file = &expected.file;
+    let read = obj::load(&folder.join(file), Shading::Smooth).unwrap();
+    let mesh = &read.mesh;
+    assert_eq!(mesh.positions().len(), expected.vertices, "{file}");
+    assert_eq!(mesh.triangles().len(), expected.faces, "{file}");
+    let report = EdgeAdjacency::new(mesh.triangles()).closedness(mesh);
+    let defects = [report.boundary, report.over_shared, report.flipped];
+    assert_eq!(defects, expected.defects, "{file}: {report}");
+    assert_eq!(report.is_closed(), expected.defects == [0; 3], "{file}: {report}");
+    if report.is_closed() {
+        assert!(mesh.signed_volume() > 0.0, "{file}");
+    }
+    for warning in &read.warnings {
+        eprintln!("{file}: {} x{}: {}", warning.code, warning.count, warning.message);
+    }
+}

@@ -57,8 +57,15 @@ fn meshes_are_as_their_table_says() {
     };
     let table = std::fs::read_to_string(folder.join("README.md")).unwrap();
     let rows: Vec<Row> = table.lines().filter_map(row).collect();
-    assert!(rows.len() >= 30, "only {} rows of the table understood", rows.len());
-    assert!(rows.iter().any(|r| r.defects != [0; 3]), "no negative control");
+    assert!(
+        rows.len() >= 30,
+        "only {} rows of the table understood",
+        rows.len()
+    );
+    assert!(
+        rows.iter().any(|r| r.defects != [0; 3]),
+        "no negative control"
+    );
     for expected in rows {
         check(&folder.join("meshes"), &expected);
     }
@@ -73,11 +80,18 @@ fn check(folder: &std::path::Path, expected: &Row) {
     let report = EdgeAdjacency::new(mesh.triangles()).closedness(mesh);
     let defects = [report.boundary, report.over_shared, report.flipped];
     assert_eq!(defects, expected.defects, "{file}: {report}");
-    assert_eq!(report.is_closed(), expected.defects == [0; 3], "{file}: {report}");
+    assert_eq!(
+        report.is_closed(),
+        expected.defects == [0; 3],
+        "{file}: {report}"
+    );
     if report.is_closed() {
         assert!(mesh.signed_volume() > 0.0, "{file}");
     }
     for warning in &read.warnings {
-        eprintln!("{file}: {} x{}: {}", warning.code, warning.count, warning.message);
+        eprintln!(
+            "{file}: {} x{}: {}",
+            warning.code, warning.count, warning.message
+        );
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn near_plane() -> Scene {
 /// with a ring of exactly 256.
 pub(super) fn nested_300() -> Scene {
     let light = Light::horizontal_square(DVec3::new(0.2, 9.0, 0.3), 1.0);
-    let camera = Camera::look_at([3.2, 3.8, 5.2], [0.0, 0.3, 0.0]);
+    let camera = Camera::look_at([2.4, 1.7, 5.4], [0.0, 1.2, 0.0]);
     Scene::new(camera, vec![light], vec![floor(8.0), stack()])
 }
 
@@ -125,7 +125,7 @@ fn stack_shape() -> Shape {
     Shape::merged((0..300).map(|i| {
         let i = f64::from(i);
         let side = 2.0 - 0.005 * i;
-        shape::cuboid(DVec3::Y * (0.5 + 0.01 * i), DVec3::new(side, 0.004, side))
+        shape::cuboid(DVec3::Y * (2.0 + 0.01 * i), DVec3::new(side, 0.004, side))
     }))
 }
 

@@ -1,0 +1,363 @@
+//! Hard shadows by f64 rays: for every pixel, what is seen and how many
+//! blockers lie between it and the light.
+//!
+//! The shadow count is what an ideal stencil holds after z-fail: the winding
+//! number of the shadow volumes at the visible point. Each volume is the sum of
+//! the volumes of its counted triangles (light-facing ones of closed casters,
+//! all of others; [`Counting`]), so the count is the number of counted
+//! triangles that the open segment from the point to the light crosses, without
+//! the triangle the point lies on. Facing is the same f64 expression as in
+//! [`crate::silhouette`]; everything else is independent of it.
+//!
+//! # Pixels near an edge
+//!
+//! A rasteriser snaps vertices and rounds depth, so next to an edge it may
+//! rightly differ. [`HardTruth`] therefore samples a lattice of half-pixel
+//! spacing (pixel centres, and the corners and edge midpoints that neighbouring
+//! pixels share) and calls a pixel *interior* only where object and count agree
+//! at all samples within `reach` half pixels of its centre.
+
+use rayon::prelude::*;
+
+use super::bvh::{Bvh, Ray};
+use crate::caster::{Caster, Counting};
+use crate::light::HardLight;
+use crate::scene::{EyeRays, Scene};
+use crate::silhouette::light_facing;
+
+/// Distance from the surface, in units of the distance to the eye, within which
+/// a crossing is taken for the surface itself.
+const SELF_DISTANCE: f64 = 1e-10;
+
+/// A point of a visible surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceHit {
+    /// Index into [`Scene::objects`].
+    pub object: u32,
+    /// Triangle of that object's mesh.
+    pub triangle: u32,
+    /// Distance along the line of sight (planar, not radial), scene units.
+    pub depth: f64,
+}
+
+/// What one image point shows: nothing, or a surface under a number of blockers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// The surface seen; `None` for background.
+    pub hit: Option<SurfaceHit>,
+    /// Blockers between it and the light, 0 when lit or background.
+    pub shadow_count: u32,
+}
+
+impl Sample {
+    /// Whether two samples show the same object under the same count.
+    fn agrees_with(&self, other: &Self) -> bool {
+        let object = |s: &Self| s.hit.map(|h| h.object);
+        object(self) == object(other) && self.shadow_count == other.shadow_count
+    }
+}
+
+/// Truth for one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelTruth {
+    /// What the pixel's centre shows.
+    pub centre: Sample,
+    /// Whether everything within reach shows the same object and count, so that
+    /// a rasteriser has no excuse to differ.
+    pub interior: bool,
+}
+
+impl PixelTruth {
+    /// Whether a surface is seen and light reaches it.
+    pub fn is_lit(&self) -> bool {
+        self.centre.hit.is_some() && self.centre.shadow_count == 0
+    }
+}
+
+/// Ray-casting structures of one scene and light; build once, query often.
+#[derive(Clone, Debug)]
+pub struct HardOracle {
+    light: HardLight,
+    near: f64,
+    /// All triangles, in drawing order.
+    surfaces: Bvh,
+    /// Object and triangle of each surface.
+    surface_names: Vec<(u32, u32)>,
+    /// Counted triangles of the casters.
+    blockers: Bvh,
+    /// Surface index of each blocker.
+    blocker_surface: Vec<u32>,
+}
+
+impl HardOracle {
+    /// Prepares `scene` for the hard light at the centre of `light`.
+    pub fn new(scene: &Scene, light: HardLight) -> Self {
+        let mut surfaces = Vec::new();
+        let mut surface_names = Vec::new();
+        let mut blockers = Vec::new();
+        let mut blocker_surface = Vec::new();
+        for (o, object) in scene.objects.iter().enumerate() {
+            let counted = object.casts.then(|| counted_triangles(&object.mesh, light));
+            for t in 0..object.mesh.triangles().len() {
+                let corners = object.mesh.corners(t);
+                if counted.as_ref().is_some_and(|c| c[t]) {
+                    blockers.push(corners);
+                    blocker_surface.push(surfaces.len() as u32);
+                }
+                surfaces.push(corners);
+                surface_names.push((o as u32, t as u32));
+            }
+        }
+        Self {
+            light,
+            near: scene.camera.near,
+            surfaces: Bvh::new(&surfaces),
+            surface_names,
+            blockers: Bvh::new(&blockers),
+            blocker_surface,
+        }
+    }
+
+    /// What image point `(x, y)` shows, in pixels, y down from the top.
+    pub fn sample(&self, rays: &EyeRays, x: f64, y: f64) -> Sample {
+        let ray = Ray::new(rays.origin, rays.direction(x, y));
+        let Some((surface, depth)) = self.surfaces.closest(&ray, self.near..f64::INFINITY) else {
+            return Sample::default();
+        };
+        let (object, triangle) = self.surface_names[surface as usize];
+        Sample {
+            hit: Some(SurfaceHit {
+                object,
+                triangle,
+                depth,
+            }),
+            shadow_count: self.blockers_above(surface, &ray, depth),
+        }
+    }
+
+    /// Counted triangles between the point at `depth` of the eye ray and the
+    /// light, leaving out `surface`, on which the point lies.
+    fn blockers_above(&self, surface: u32, eye_ray: &Ray, depth: f64) -> u32 {
+        let origin = eye_ray.at(depth);
+        let towards = self.light.towards_from(origin);
+        let other = |blocker: u32| self.blocker_surface[blocker as usize] != surface;
+        let start = SELF_DISTANCE * depth / towards.length();
+        let shadow_ray = Ray::new(origin, towards);
+        self.blockers
+            .count(&shadow_ray, start..self.light_at(), other)
+    }
+
+    /// The `t` at which a ray along [`HardLight::towards_from`] meets the light.
+    fn light_at(&self) -> f64 {
+        if self.light.is_directional() {
+            f64::INFINITY
+        } else {
+            1.0
+        }
+    }
+}
+
+/// Which triangles of a caster block, by the rule of its volume.
+fn counted_triangles(mesh: &crate::mesh::Mesh, light: HardLight) -> Vec<bool> {
+    match Caster::new(mesh).counting(mesh, light) {
+        Counting::LightFacing => light_facing(mesh, light),
+        Counting::AllTriangles => vec![true; mesh.triangles().len()],
+    }
+}
+
+/// Truth for every pixel of an image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HardTruth {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Row by row, row 0 on top.
+    pub pixels: Vec<PixelTruth>,
+}
+
+impl HardTruth {
+    /// Evaluates `scene` for light `light` (index) at `width` by `height`;
+    /// interior means agreement within `reach` half pixels (1 = half a pixel).
+    /// Rows run in parallel; the result does not depend on the thread count.
+    pub fn of_scene(scene: &Scene, light: usize, width: u32, height: u32, reach: u32) -> Self {
+        let oracle = HardOracle::new(scene, scene.lights[light].hard());
+        let lattice = Lattice::sample(&oracle, scene, width, height, reach);
+        let pixels = (0..width * height)
+            .into_par_iter()
+            .map(|i| lattice.pixel(i % width, i / width))
+            .collect();
+        Self {
+            width,
+            height,
+            pixels,
+        }
+    }
+
+    /// Pixel in column `x`, row `y` from the top.
+    pub fn pixel(&self, x: u32, y: u32) -> &PixelTruth {
+        &self.pixels[(y * self.width + x) as usize]
+    }
+}
+
+/// Samples at half-pixel spacing, `reach` of them beyond the outermost centres.
+struct Lattice {
+    reach: u32,
+    columns: u32,
+    samples: Vec<Sample>,
+}
+
+impl Lattice {
+    fn sample(oracle: &HardOracle, scene: &Scene, width: u32, height: u32, reach: u32) -> Self {
+        let rays = scene.camera.eye_rays(width, height);
+        // Lattice index `reach` is the first pixel's centre, at 0.5.
+        let place = |k: u32| 0.5 + 0.5 * (f64::from(k) - f64::from(reach));
+        let columns = 2 * width - 1 + 2 * reach;
+        let rows = 2 * height - 1 + 2 * reach;
+        let row = |r: u32| (0..columns).map(move |c| (place(c), place(r)));
+        let samples = (0..rows)
+            .into_par_iter()
+            .flat_map_iter(row)
+            .map(|(x, y)| oracle.sample(&rays, x, y))
+            .collect();
+        Self {
+            reach,
+            columns,
+            samples,
+        }
+    }
+
+    fn pixel(&self, x: u32, y: u32) -> PixelTruth {
+        let around = |k: u32| 2 * k..=2 * k + 2 * self.reach;
+        let at = |c: u32, r: u32| &self.samples[(r * self.columns + c) as usize];
+        let centre = at(2 * x + self.reach, 2 * y + self.reach);
+        let interior = around(y).all(|r| around(x).all(|c| at(c, r).agrees_with(centre)));
+        PixelTruth {
+            centre: *centre,
+            interior,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+    use crate::winding::volume_winding;
+    use glam::DVec3;
+
+    /// At interior pixels the count equals the summed winding numbers of the
+    /// shadow volumes at the visible point: rays against solid angles.
+    fn check_against_winding(name: &str, size: u32) -> usize {
+        let scene = builtin::build(name).unwrap();
+        let light = scene.lights[0].hard();
+        let truth = HardTruth::of_scene(&scene, 0, size, size, 1);
+        let casters = scene.casters().map(|o| (o, Caster::new(&o.mesh)));
+        let volumes: Vec<_> = casters.map(|(o, c)| c.volume(&o.mesh, light)).collect();
+        let rays = scene.camera.eye_rays(size, size);
+        let mut checked = 0;
+        for y in 0..size {
+            for x in 0..size {
+                let pixel = truth.pixel(x, y);
+                let Some(hit) = pixel.centre.hit.filter(|_| pixel.interior) else {
+                    continue;
+                };
+                // A little towards the eye, off the surface.
+                let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let p = rays.origin + rays.direction(px, py) * (hit.depth * (1.0 - 1e-5));
+                let winding: i32 = volumes.iter().map(|v| volume_winding(v, p)).sum();
+                assert_eq!(
+                    pixel.centre.shadow_count as i32, winding,
+                    "{name} ({x},{y})"
+                );
+                checked += 1;
+            }
+        }
+        checked
+    }
+
+    #[test]
+    fn counts_are_winding_numbers() {
+        for name in [
+            "cylinder",
+            "columns",
+            "creature",
+            "adversarial-eye-in-shadow",
+        ] {
+            assert!(
+                check_against_winding(name, 32) > 300,
+                "{name}: too few interior pixels"
+            );
+        }
+    }
+
+    #[test]
+    fn nested_volumes_count_to_three_hundred() {
+        let scene = builtin::build("adversarial-nested-300").unwrap();
+        let truth = HardTruth::of_scene(&scene, 0, 64, 64, 1);
+        let most = truth.pixels.iter().map(|p| p.centre.shadow_count).max();
+        assert_eq!(most, Some(300));
+    }
+
+    #[test]
+    fn interior_pixels_stay_away_from_edges() {
+        let scene = builtin::build("peer-a").unwrap();
+        let truth = HardTruth::of_scene(&scene, 0, 96, 96, 1);
+        let interior = truth.pixels.iter().filter(|p| p.interior).count();
+        assert!(
+            interior > 96 * 96 * 8 / 10 && interior < 96 * 96,
+            "{interior}"
+        );
+        // Wherever two neighbours differ, both must be marked as near an edge.
+        for y in 0..96 {
+            for x in 0..95 {
+                let (a, b) = (truth.pixel(x, y), truth.pixel(x + 1, y));
+                if !a.centre.agrees_with(&b.centre) {
+                    assert!(!(a.interior && b.interior), "({x},{y})");
+                }
+            }
+        }
+        let shadowed = |p: &&PixelTruth| p.centre.shadow_count > 0 && p.interior;
+        assert!(truth.pixels.iter().filter(shadowed).count() > 300);
+        assert!(truth.pixels.iter().any(PixelTruth::is_lit));
+    }
+
+    #[test]
+    fn a_larger_reach_keeps_fewer_pixels() {
+        let scene = builtin::build("cylinder").unwrap();
+        let interior = |reach| {
+            let truth = HardTruth::of_scene(&scene, 0, 48, 32, reach);
+            truth.pixels.iter().map(|p| p.interior).collect::<Vec<_>>()
+        };
+        let (near, far) = (interior(1), interior(3));
+        assert!(near.iter().zip(&far).all(|(n, f)| *n || !*f));
+        assert!(near != far);
+    }
+
+    #[test]
+    fn thread_count_does_not_matter() {
+        let scene = builtin::build("columns").unwrap();
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| HardTruth::of_scene(&scene, 0, 40, 30, 1))
+        };
+        assert!(on(1) == on(3));
+    }
+
+    /// A directional light and the same direction from very far agree.
+    #[test]
+    fn directional_light_is_a_point_far_away() {
+        let scene = builtin::build("cylinder").unwrap();
+        let towards = DVec3::new(0.4, 1.0, 0.3);
+        let far = HardOracle::new(&scene, HardLight::Point(towards * 1e9));
+        let directional = HardOracle::new(&scene, HardLight::Directional(towards));
+        let rays = scene.camera.eye_rays(32, 32);
+        for i in 0..32 * 32 {
+            let (x, y) = (f64::from(i % 32) + 0.5, f64::from(i / 32) + 0.5);
+            assert_eq!(far.sample(&rays, x, y), directional.sample(&rays, x, y));
+        }
+    }
+}

@@ -2,10 +2,13 @@
 
 pub mod builtin;
 mod camera;
+pub mod file;
+mod frame_model;
 
 use std::sync::Arc;
 
 pub use camera::{Camera, EyeRays};
+pub use frame_model::{frame_model, load_and_frame};
 
 use crate::light::Light;
 use crate::mesh::Mesh;

@@ -29,7 +29,7 @@ pub use torus_knot::torus_knot;
 use glam::{DMat4, DVec3};
 
 use crate::error::MeshError;
-use crate::mesh::{Mesh, Shading, narrow};
+use crate::mesh::{Mesh, Shading, narrow, widen};
 
 /// An indexed triangle list with f64 positions.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,6 +41,14 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// Positions (widened exactly) and triangles of a mesh.
+    pub fn from_mesh(mesh: &Mesh) -> Self {
+        Self {
+            positions: mesh.positions().iter().map(|&p| widen(p)).collect(),
+            triangles: mesh.triangles().to_vec(),
+        }
+    }
+
     /// Applies an affine `world_from_local` in f64. A mirroring transform turns
     /// the triangles round, so that outside stays outside.
     pub fn transformed(mut self, world_from_local: DMat4) -> Self {

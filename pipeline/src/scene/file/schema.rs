@@ -1,0 +1,200 @@
+//! What a scene file may contain, as serde sees it. Values that can be wrong in
+//! themselves keep their spans; [`super::build`] judges them.
+
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
+use toml::Spanned;
+
+pub(super) type Number = Spanned<f64>;
+pub(super) type Triple = Spanned<[f64; 3]>;
+pub(super) type Count = Spanned<u32>;
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneTable {
+    #[serde(default)]
+    pub(super) name: String,
+    pub(super) size: Option<Spanned<[u32; 2]>>,
+    pub(super) ambient: Option<Triple>,
+    pub(super) background: Option<Triple>,
+    pub(super) camera: CameraTable,
+    #[serde(default)]
+    pub(super) lights: Vec<LightTable>,
+    #[serde(default)]
+    pub(super) objects: Vec<ObjectTable>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CameraTable {
+    pub(super) eye: Triple,
+    pub(super) target: Triple,
+    pub(super) up: Option<Triple>,
+    pub(super) fov: Option<Number>,
+    pub(super) near: Option<Number>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LightTable {
+    pub(super) shape: LightShapeTable,
+    pub(super) colour: Option<Triple>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) enum LightShapeTable {
+    Point {
+        position: Triple,
+    },
+    Square {
+        centre: Triple,
+        side: Number,
+    },
+    #[serde(rename_all = "kebab-case")]
+    Rectangle {
+        centre: Triple,
+        edge_u: Triple,
+        edge_v: Triple,
+    },
+    Disc {
+        centre: Triple,
+        normal: Triple,
+        radius: Number,
+    },
+    Sphere {
+        centre: Triple,
+        radius: Number,
+    },
+    Directional {
+        towards: Triple,
+    },
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObjectTable {
+    pub(super) name: Option<String>,
+    pub(super) mesh: MeshTable,
+    pub(super) scale: Option<Spanned<Scale>>,
+    pub(super) rotate: Option<Triple>,
+    pub(super) translate: Option<Triple>,
+    pub(super) crease: Option<Number>,
+    pub(super) material: Option<MaterialTable>,
+    pub(super) casts: Option<bool>,
+    pub(super) receives: Option<bool>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MaterialTable {
+    pub(super) albedo: Option<Triple>,
+    pub(super) specular: Option<Triple>,
+    pub(super) shininess: Option<Number>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(super) enum MeshTable {
+    Obj(Spanned<String>),
+    Plane {
+        half: Number,
+    },
+    Box {
+        size: Triple,
+    },
+    Cylinder {
+        segments: Count,
+        radius: Number,
+        height: Number,
+    },
+    Sphere {
+        subdivisions: Count,
+        radius: Number,
+    },
+    Capsule {
+        from: Triple,
+        to: Triple,
+        radius: Number,
+    },
+    TorusKnot {
+        p: Count,
+        q: Count,
+        ring: Number,
+        minor: Number,
+        tube: Number,
+        along: Count,
+        around: Count,
+    },
+    Terrain {
+        cells: Count,
+        half: Number,
+        amplitude: Number,
+    },
+    Creature {
+        phase: Number,
+    },
+}
+
+impl MeshTable {
+    /// Name of the kind, for objects that have none of their own.
+    pub(super) fn kind(&self) -> &'static str {
+        match self {
+            Self::Obj(_) => "obj",
+            Self::Plane { .. } => "plane",
+            Self::Box { .. } => "box",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Sphere { .. } => "sphere",
+            Self::Capsule { .. } => "capsule",
+            Self::TorusKnot { .. } => "torus-knot",
+            Self::Terrain { .. } => "terrain",
+            Self::Creature { .. } => "creature",
+        }
+    }
+
+    /// Whether it is a sheet, which is never closed.
+    pub(super) fn is_sheet(&self) -> bool {
+        matches!(self, Self::Plane { .. } | Self::Terrain { .. })
+    }
+}
+
+/// A factor for all axes, or one for each.
+#[derive(Clone, Copy)]
+pub(super) struct Scale(pub(super) [f64; 3]);
+
+impl<'de> Deserialize<'de> for Scale {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ScaleVisitor)
+    }
+}
+
+struct ScaleVisitor;
+
+impl<'de> Visitor<'de> for ScaleVisitor {
+    type Value = Scale;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number or an array of three numbers")
+    }
+
+    fn visit_f64<E>(self, factor: f64) -> Result<Scale, E> {
+        Ok(Scale([factor; 3]))
+    }
+
+    fn visit_i64<E>(self, factor: i64) -> Result<Scale, E> {
+        Ok(Scale([factor as f64; 3]))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Scale, A::Error> {
+        let mut factors = [0.0; 3];
+        for (k, factor) in factors.iter_mut().enumerate() {
+            let next = seq.next_element()?;
+            *factor = next.ok_or_else(|| serde::de::Error::invalid_length(k, &self))?;
+        }
+        match seq.next_element::<f64>()? {
+            Some(_) => Err(serde::de::Error::invalid_length(4, &self)),
+            None => Ok(Scale(factors)),
+        }
+    }
+}

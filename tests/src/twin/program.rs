@@ -1,0 +1,193 @@
+//! The closed family of fragment shader programs, one fragment at a time.
+
+use gnomon_raster::MAX_COLOR_ATTACHMENTS;
+use gnomon_raster::shader::{FragmentOutputs, ScalarFragment, ScalarFragmentOutput};
+
+/// Where colours come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColorSource {
+    /// The same everywhere, by attachment.
+    Constant([[f32; 4]; MAX_COLOR_ATTACHMENTS]),
+    /// Varyings, in turn.
+    Varyings,
+    /// Position, depth, facing, primitive number and w.
+    Geometry,
+    /// NaN, infinities and values out of every range, by position, and varyings.
+    Wild,
+}
+
+/// Which fragments are thrown away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Discard {
+    /// Declared, but none.
+    Never,
+    /// All.
+    Always,
+    /// Every other square of 2ⁿ pixels.
+    Checker(u32),
+    /// Where a varying is below a threshold.
+    Below(usize, f32),
+}
+
+/// What depth is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DepthSource {
+    /// The interpolated one.
+    Same,
+    /// A varying times a factor.
+    Varying(usize, f32),
+    /// NaN, infinities, out of range, by position, and a varying.
+    Wild(usize),
+}
+
+/// A fragment shader.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// Colour of each output.
+    pub color: ColorSource,
+    /// Number of outputs.
+    pub outputs: usize,
+    /// Outputs that are hashed integers of the position instead.
+    pub uint: [bool; MAX_COLOR_ATTACHMENTS],
+    /// Discards.
+    pub discard: Option<Discard>,
+    /// Depth.
+    pub depth: Option<DepthSource>,
+}
+
+/// Every eighth pixel has one of these, or keeps its varying (index 4).
+pub(super) const WILD_COLORS: [u32; 8] = [
+    0x7fc1_2345, // a NaN that is not the canonical one
+    0x7f80_0000, // ∞
+    0xff80_0000, // −∞
+    0x8000_0000, // −0
+    0,           // the varying
+    0x7149_f2ca, // 1e30
+    0xbe80_0000, // −¼
+    0x4788_b840, // 70000.5
+];
+
+/// As above, for depth.
+pub(super) const WILD_DEPTHS: [u32; 8] = [
+    0xffc0_0001, // NaN
+    0x7f80_0000, // ∞
+    0xff80_0000, // −∞
+    0x8000_0000, // −0
+    0,           // the varying
+    0x3f80_0001, // just above 1
+    0xb300_0000, // just below 0
+    0x3f7f_ffff, // just below 1
+];
+
+/// Factors of the hash that fills integer outputs.
+pub(super) const HASH: [u32; 3] = [0x9e37_79b1, 0x85eb_ca77, 0xc2b2_ae3d];
+
+impl Program {
+    /// One colour everywhere, to one output.
+    #[must_use]
+    pub fn constant(rgba: [f32; 4]) -> Self {
+        Self::plain(ColorSource::Constant([rgba; MAX_COLOR_ATTACHMENTS]))
+    }
+
+    /// One output, nothing declared.
+    #[must_use]
+    pub fn plain(color: ColorSource) -> Self {
+        Self {
+            color,
+            outputs: 1,
+            uint: [false; MAX_COLOR_ATTACHMENTS],
+            discard: None,
+            depth: None,
+        }
+    }
+
+    /// What the shader declares.
+    #[must_use]
+    pub fn declared(&self) -> FragmentOutputs {
+        FragmentOutputs {
+            discards: self.discard.is_some(),
+            depth: self.depth.is_some(),
+            textures: 0,
+        }
+    }
+
+    /// Shades one fragment.
+    #[must_use]
+    pub fn shade(&self, f: &ScalarFragment) -> ScalarFragmentOutput {
+        let mut out = ScalarFragmentOutput {
+            depth: self.depth.map_or(0.0, |d| shade_depth(d, f)),
+            discard: self.discard.is_some_and(|d| discards(d, f)),
+            ..ScalarFragmentOutput::default()
+        };
+        for o in 0..self.outputs {
+            out.color[o] = if self.uint[o] {
+                [hash(f); 4]
+            } else {
+                self.color(o, f)
+            };
+        }
+        out
+    }
+
+    fn color(&self, o: usize, f: &ScalarFragment) -> [f32; 4] {
+        match &self.color {
+            ColorSource::Constant(c) => c[o],
+            ColorSource::Varyings => std::array::from_fn(|c| f.varyings[(4 * o + c) % 6]),
+            ColorSource::Geometry => geometry(o, f),
+            ColorSource::Wild => {
+                std::array::from_fn(|c| wild(&WILD_COLORS, (o + c) as u32, f.varyings[c], f))
+            }
+        }
+    }
+}
+
+fn geometry(o: usize, f: &ScalarFragment) -> [f32; 4] {
+    let (x, y) = (f.x as f32 + 0.5, f.y as f32 + 0.5);
+    if o == 0 {
+        [
+            x * 0.015625,
+            y / (y + 3.0),
+            f.depth,
+            if f.front_facing { 0.75 } else { 0.25 },
+        ]
+    } else {
+        [
+            f.depth * f.depth,
+            f.primitive_index as f32 * 0.125,
+            x.sqrt(),
+            f.w,
+        ]
+    }
+}
+
+/// One of eight values by position.
+fn wild(table: &[u32; 8], shift: u32, varying: f32, f: &ScalarFragment) -> f32 {
+    let k = (f.x + 3 * f.y + shift) % 8;
+    if k == 4 {
+        varying
+    } else {
+        f32::from_bits(table[k as usize])
+    }
+}
+
+fn hash(f: &ScalarFragment) -> f32 {
+    let [a, b, c] = HASH;
+    f32::from_bits(f.x.wrapping_mul(a) ^ f.y.wrapping_mul(b) ^ f.primitive_index.wrapping_mul(c))
+}
+
+fn shade_depth(d: DepthSource, f: &ScalarFragment) -> f32 {
+    match d {
+        DepthSource::Same => f.depth,
+        DepthSource::Varying(i, scale) => f.varyings[i] * scale,
+        DepthSource::Wild(i) => wild(&WILD_DEPTHS, 0, f.varyings[i], f),
+    }
+}
+
+fn discards(d: Discard, f: &ScalarFragment) -> bool {
+    match d {
+        Discard::Never => false,
+        Discard::Always => true,
+        Discard::Checker(n) => ((f.x >> n) + (f.y >> n)) % 2 == 1,
+        Discard::Below(i, threshold) => f.varyings[i] < threshold,
+    }
+}

@@ -5,8 +5,11 @@
 use std::path::PathBuf;
 
 use gnomon_pipeline::adjacency::EdgeAdjacency;
+use gnomon_pipeline::caster::Caster;
+use gnomon_pipeline::light::HardLight;
 use gnomon_pipeline::mesh::Shading;
 use gnomon_pipeline::obj;
+use gnomon_pipeline::winding::volume_solid_angle;
 
 /// `$GNOMON_DATA`, or `shared/data` beside the workspace.
 fn data_folder() -> Option<PathBuf> {
@@ -92,6 +95,40 @@ fn check(folder: &std::path::Path, expected: &Row) {
         eprintln!(
             "{file}: {} x{}: {}",
             warning.code, warning.count, warning.message
+        );
+    }
+}
+
+/// Scanned and open meshes alike: a volume winds a whole number of times round
+/// any point, so no count leaks out of it.
+#[test]
+fn volumes_of_real_meshes_are_closed() {
+    let Some(folder) = data_folder() else {
+        eprintln!("no data folder: nothing checked");
+        return;
+    };
+    for file in [
+        "bunny.obj",
+        "armadillo_10k.obj",
+        "teapot_classic_open.obj",
+        "suzanne.obj",
+        "skeleton_full.obj",
+    ] {
+        let mesh = obj::load(&folder.join("meshes").join(file), Shading::Flat)
+            .unwrap()
+            .mesh;
+        let (low, high) = mesh.bounds().unwrap();
+        let (centre, size) = ((low + high) / 2.0, high - low);
+        let light = HardLight::Point(centre + size * glam::DVec3::new(0.8, 1.7, 0.6));
+        let volume = Caster::new(&mesh).volume(&mesh, light);
+        let below = centre - size * glam::DVec3::new(0.81, 1.73, 0.59);
+        let counts = [below, centre + size * 0.9].map(|p| volume_solid_angle(&volume, p));
+        for count in counts {
+            assert!((count - count.round()).abs() < 1e-6, "{file}: {count}");
+        }
+        assert!(
+            counts[0] > 0.5 && counts[1].abs() < 0.5,
+            "{file}: {counts:?}"
         );
     }
 }

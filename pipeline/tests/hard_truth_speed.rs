@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use gnomon_pipeline::oracle::hard::HardTruth;
+use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth};
 use gnomon_pipeline::scene::builtin;
 
 #[test]
@@ -19,7 +19,7 @@ fn time_the_truth_of_large_scenes() {
     ] {
         let scene = builtin::build(name).unwrap();
         let start = Instant::now();
-        let truth = HardTruth::of_scene(&scene, 0, 512, 512, 1);
+        let truth = HardTruth::of_scene(&scene, 0, [512; 2], EdgeTolerance::HALF_PIXEL_AND_DEPTH);
         let seconds = start.elapsed().as_secs_f64();
         let interior = truth.pixels.iter().filter(|p| p.interior).count();
         let triangles = scene.triangle_count();

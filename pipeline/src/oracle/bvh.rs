@@ -223,7 +223,8 @@ impl Bvh {
         best
     }
 
-    /// How many triangles with `wanted(index)` the ray crosses with `t` in `range`.
+    /// How many triangles with `wanted(index)` the ray crosses with `t` in
+    /// `range`. A ray exactly through an edge counts every triangle at it.
     pub fn count(&self, ray: &Ray, range: Range<f64>, wanted: impl Fn(u32) -> bool) -> u32 {
         let mut count = 0;
         self.visit(ray, range, |index, _, _| count += u32::from(wanted(index)));

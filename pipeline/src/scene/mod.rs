@@ -4,11 +4,13 @@ pub mod builtin;
 mod camera;
 pub mod file;
 mod frame_model;
+mod open;
 
 use std::sync::Arc;
 
 pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
+pub use open::{SceneError, open};
 
 use crate::light::Light;
 use crate::mesh::Mesh;

@@ -17,7 +17,7 @@ pub fn creature(phase: f64) -> [Shape; CREATURE_PARTS] {
     let [right_thigh, right_shin] = leg(0.16, -swing);
     let [left_arm, left_forearm] = arm(-0.36, -swing);
     let [right_arm, right_forearm] = arm(0.36, swing);
-    [
+    grounded([
         limb([0.0, 0.98, 0.0], [0.0, 1.36, 0.05], 0.2, 0.25),
         cuboid(DVec3::new(0.0, 0.92, 0.0), DVec3::new(0.42, 0.2, 0.26)),
         icosphere(2, 0.17, DVec3::new(0.0, 1.76, 0.1)),
@@ -33,7 +33,14 @@ pub fn creature(phase: f64) -> [Shape; CREATURE_PARTS] {
         left_forearm,
         right_arm,
         right_forearm,
-    ]
+    ])
+}
+
+/// Lets the lowest point touch y = 0, whatever the pose.
+fn grounded(parts: [Shape; CREATURE_PARTS]) -> [Shape; CREATURE_PARTS] {
+    let heights = parts.iter().flat_map(|part| &part.positions).map(|p| p.y);
+    let lowest = heights.fold(f64::INFINITY, f64::min);
+    parts.map(|part| part.translated(DVec3::Y * -lowest))
 }
 
 fn limb(from: [f64; 3], to: [f64; 3], r0: f64, r1: f64) -> Shape {

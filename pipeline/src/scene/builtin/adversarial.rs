@@ -24,7 +24,7 @@ pub(super) fn near_plane() -> Scene {
 /// with a ring of exactly 256.
 pub(super) fn nested_300() -> Scene {
     let light = Light::horizontal_square(DVec3::new(0.2, 9.0, 0.3), 1.0);
-    let camera = Camera::look_at([2.4, 1.7, 5.4], [0.0, 1.2, 0.0]);
+    let camera = Camera::look_at([3.0, 1.8, 7.6], [0.0, 2.1, 0.0]);
     Scene::new(camera, vec![light], vec![floor(8.0), stack()])
 }
 

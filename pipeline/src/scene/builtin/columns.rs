@@ -13,7 +13,7 @@ pub(super) fn scene() -> Scene {
         || (0..20).map(|n| DVec3::new(f64::from(n % 5) - 2.0, 0.0, f64::from(n / 5) - 1.5) * 1.4);
     let columns = places().map(|p| shape::cylinder(16, 0.22, 0.0, 1.8).translated(p));
     let boxes = places().map(|p| shape::cuboid(p + DVec3::Y * 1.93, DVec3::new(0.62, 0.24, 0.62)));
-    let light = Light::horizontal_square(DVec3::new(-3.5, 5.5, 1.7), 1.0);
+    let light = Light::horizontal_square(DVec3::new(-4.2, 5.2, 4.1), 1.0);
     Scene::new(
         Camera::look_at([2.6, 1.3, 6.4], [-0.4, 0.8, 0.0]),
         vec![light],

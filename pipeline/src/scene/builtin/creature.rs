@@ -9,7 +9,7 @@ use crate::shape;
 
 /// The biped in mid-stride, turned a little from the eye.
 pub(super) fn scene() -> Scene {
-    let body = shape::placed_creature(1.1, 0.5, DVec3::Y * 0.08);
+    let body = shape::placed_creature(1.1, 0.5, DVec3::ZERO);
     let light = Light::horizontal_square(DVec3::new(2.2, 4.6, 2.4), 1.0);
     Scene::new(
         Camera::look_at([0.6, 2.0, 4.6], [-0.2, 0.9, 0.0]),

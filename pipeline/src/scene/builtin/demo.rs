@@ -11,7 +11,10 @@ use crate::shape::{self, Shape};
 pub(super) fn scene() -> Scene {
     let mut light = Light::horizontal_square(DVec3::new(3.4, 6.2, 2.6), 1.0);
     light.colour = [1.0, 0.95, 0.86];
-    let camera = Camera::look_at([-1.2, 3.0, 7.4], [0.0, 0.85, -0.2]);
+    let camera = Camera {
+        fov_y_degrees: 34.0,
+        ..Camera::look_at([-1.2, 3.0, 7.6], [0.05, 0.95, 0.0])
+    };
     let mut scene = Scene::new(camera, vec![light], objects());
     scene.ambient = [0.16, 0.18, 0.23];
     scene.background = [0.34, 0.44, 0.58];
@@ -19,7 +22,7 @@ pub(super) fn scene() -> Scene {
 }
 
 fn objects() -> Vec<Object> {
-    let creature = shape::placed_creature(1.1, 0.45, DVec3::new(-1.3, 0.08, 1.3));
+    let creature = shape::placed_creature(1.1, 0.45, DVec3::new(-1.3, 0.0, 1.3));
     let knot = shape::torus_knot(2, 3, 0.5, 0.2, 0.1, 256, 20, DVec3::new(0.7, 1.25, 0.4));
     vec![
         solid("ground", shape::plane(30.0, 0.0), FLOOR).receiver_only(),

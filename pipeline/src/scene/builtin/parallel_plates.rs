@@ -23,7 +23,7 @@ pub(super) fn scene() -> Scene {
     let height = PLATES.floor_distance - PLATES.plate_distance;
     let plate = shape::bevelled_plate(PLATES.plate_half, height, 0.01, 1.6);
     Scene::new(
-        Camera::look_at([1.2, 1.9, 2.6], [0.0, 0.25, 0.0]),
+        Camera::look_at([0.9, 1.5, 2.1], [0.0, 0.3, 0.0]),
         vec![light],
         vec![floor(4.0), solid("plate", plate, STEEL)],
     )

@@ -1,0 +1,56 @@
+//! Any scene by what a user calls it.
+
+use std::path::Path;
+
+use thiserror::Error;
+
+use super::file::{self, SceneFileError};
+use super::{Scene, builtin, load_and_frame};
+use crate::error::UnknownScene;
+use crate::obj::ObjError;
+
+/// Why a scene could not be had.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// Not a path and not a built-in name.
+    #[error("{0}; or give the path of a .toml scene or an .obj model")]
+    Unknown(#[from] UnknownScene),
+    /// A scene file is wrong.
+    #[error(transparent)]
+    File(#[from] SceneFileError),
+    /// A model is wrong.
+    #[error(transparent)]
+    Model(#[from] ObjError),
+}
+
+/// The scene called `name`: a `.toml` scene file, an `.obj` model to be framed,
+/// or else a built-in name.
+///
+/// # Errors
+/// The file is wrong, or there is no built-in scene of that name.
+pub fn open(name: &str) -> Result<Scene, SceneError> {
+    let path = Path::new(name);
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    match extension.to_str() {
+        Some("toml") => Ok(file::load(path)?),
+        Some("obj") => Ok(load_and_frame(path)?),
+        _ => Ok(builtin::build(name)?),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kind_of_scene_follows_from_the_name() {
+        assert_eq!(open("cylinder").unwrap().name, "cylinder");
+        assert!(matches!(open("nowhere.toml"), Err(SceneError::File(_))));
+        assert!(matches!(open("nowhere.OBJ"), Err(SceneError::Model(_))));
+        let message = open("cilinder").unwrap_err().to_string();
+        assert!(
+            message.contains("did you mean 'cylinder'") && message.contains(".toml"),
+            "{message}"
+        );
+    }
+}

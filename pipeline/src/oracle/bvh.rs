@@ -3,8 +3,9 @@
 //! The triangle test shears space so that the ray becomes an axis (Woop, Benthin
 //! and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013) and takes signs
 //! of 2D edge functions. Both products of such a function are rounded
-//! monotonically, so a sign may become zero but never wrong, and edges belong to
-//! their triangles: a ray cannot slip between neighbours, not even at a vertex.
+//! monotonically, so a sign may become zero but never wrong. Under
+//! [`EdgeRule::Closed`] a ray cannot slip between neighbours, not even at a
+//! vertex; under [`EdgeRule::HalfOpen`] it crosses one of them.
 //! Traversal order affects only speed: [`Bvh::closest`] breaks ties by the
 //! lowest triangle index, [`Bvh::count`] is a sum.
 
@@ -46,17 +47,25 @@ impl Ray {
         self.origin + self.direction * t
     }
 
-    /// The `t` at which the ray crosses the triangle, either side; edges
-    /// belong to it. `None` for triangles seen edge-on.
-    pub fn crossing(&self, triangle: &[DVec3; 3]) -> Option<f64> {
+    /// The `t` at which the ray crosses the triangle, from either side. `None`
+    /// for misses and for triangles seen edge-on.
+    pub fn crossing(&self, triangle: &[DVec3; 3], edges: EdgeRule) -> Option<f64> {
         let [a, b, c] = triangle.map(|v| v - self.origin);
         let [p, q, r] = [a, b, c].map(|v| self.sheared(v));
-        let edges = [edge(p, q), edge(q, r), edge(r, p)];
-        let inside = edges.iter().all(|e| *e >= 0.0) || edges.iter().all(|e| *e <= 0.0);
-        let edge_on = edges.iter().all(|e| *e == 0.0);
+        let sides = [[p, q], [q, r], [r, p]];
+        let signs = sides.map(|[from, to]| edge(from, to));
+        let left = signs.iter().any(|s| *s > 0.0);
+        let right = signs.iter().any(|s| *s < 0.0);
+        if left == right {
+            return None; // outside, or edge-on
+        }
+        let owns = |k: usize| signs[k] != 0.0 || owns_edge(sides[k], left);
+        if edges == EdgeRule::HalfOpen && !(0..3).all(owns) {
+            return None;
+        }
         let normal = (b - a).cross(c - a);
         let slope = normal.dot(self.direction);
-        (inside && !edge_on && slope != 0.0).then(|| normal.dot(a) / slope)
+        (slope != 0.0).then(|| normal.dot(a) / slope)
     }
 
     /// Where the parallel to the ray through `v` (relative to the origin)
@@ -65,6 +74,23 @@ impl Ray {
         let [x, y, z] = self.axes;
         [v[x] - self.shear[0] * v[z], v[y] - self.shear[1] * v[z]]
     }
+}
+
+/// Which triangles a ray through a common edge crosses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EdgeRule {
+    /// All triangles at the edge: nothing slips through.
+    Closed,
+    /// One of two neighbours turned the same way: layers count once.
+    HalfOpen,
+}
+
+/// Whether an edge through the ray belongs to the triangle that walks it, which
+/// is turned left (counter-clockwise) or not: the top-left rule of rasterisers,
+/// in sheared space.
+fn owns_edge([p, q]: [[f64; 2]; 2], left: bool) -> bool {
+    let [from, to] = if left { [p, q] } else { [q, p] };
+    to[1] < from[1] || (to[1] == from[1] && to[0] > from[0])
 }
 
 /// On which side of the line from `p` to `q` the origin lies; 0 on the line or
@@ -178,11 +204,12 @@ impl Bvh {
         self.split(triangles, right, first + middle);
     }
 
-    /// Calls `visit` with `(index, t)` of every crossing with `t` in the range
-    /// that `visit` last returned (at first, `range`).
+    /// Calls `visit` with index and `t` of every crossing within `range`, which
+    /// `visit` may narrow.
     fn visit(
         &self,
         ray: &Ray,
+        edges: EdgeRule,
         mut range: Range<f64>,
         mut visit: impl FnMut(u32, f64, &mut Range<f64>),
     ) {
@@ -197,7 +224,7 @@ impl Bvh {
                 continue;
             }
             for slot in node.leaf.clone() {
-                let crossing = ray.crossing(&self.corners[slot as usize]);
+                let crossing = ray.crossing(&self.corners[slot as usize], edges);
                 if let Some(t) = crossing.filter(|t| *t >= range.start && *t <= range.end) {
                     visit(self.order[slot as usize], t, &mut range);
                 }
@@ -214,7 +241,7 @@ impl Bvh {
     /// of several at the same `t`, the one with the lowest index.
     pub fn closest(&self, ray: &Ray, range: Range<f64>) -> Option<(u32, f64)> {
         let mut best: Option<(u32, f64)> = None;
-        self.visit(ray, range, |index, t, range| {
+        self.visit(ray, EdgeRule::Closed, range, |index, t, range| {
             if best.is_none_or(|(i, nearest)| (t, index) < (nearest, i)) {
                 best = Some((index, t));
                 range.end = t;
@@ -224,10 +251,12 @@ impl Bvh {
     }
 
     /// How many triangles with `wanted(index)` the ray crosses with `t` in
-    /// `range`. A ray exactly through an edge counts every triangle at it.
+    /// `range`; through an edge between two, one of them.
     pub fn count(&self, ray: &Ray, range: Range<f64>, wanted: impl Fn(u32) -> bool) -> u32 {
         let mut count = 0;
-        self.visit(ray, range, |index, _, _| count += u32::from(wanted(index)));
+        self.visit(ray, EdgeRule::HalfOpen, range, |index, _, _| {
+            count += u32::from(wanted(index));
+        });
         count
     }
 }
@@ -269,16 +298,38 @@ mod tests {
         ) {
             prop_assume!(direction != DVec3::ZERO);
             let ray = Ray::new(origin, direction);
-            let hits = || triangles.iter().enumerate().filter_map(|(i, t)| {
-                let t = ray.crossing(t).filter(|t| (0.0..=end).contains(t))?;
+            let hits = |edges| triangles.iter().enumerate().filter_map(move |(i, t)| {
+                let t = ray.crossing(t, edges).filter(|t| (0.0..=end).contains(t))?;
                 Some((i as u32, t))
             });
             let bvh = Bvh::new(&triangles);
-            let nearest = hits().min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+            let nearest = hits(EdgeRule::Closed)
+                .min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
             prop_assert_eq!(bvh.closest(&ray, 0.0..end), nearest);
-            prop_assert_eq!(bvh.count(&ray, 0.0..end, |_| true) as usize, hits().count());
-            let odd = hits().filter(|(i, _)| i % 2 == 1).count();
+            let all = hits(EdgeRule::HalfOpen).count();
+            prop_assert_eq!(bvh.count(&ray, 0.0..end, |_| true) as usize, all);
+            let odd = hits(EdgeRule::HalfOpen).filter(|(i, _)| i % 2 == 1).count();
             prop_assert_eq!(bvh.count(&ray, 0.0..end, |i| i % 2 == 1) as usize, odd);
+        }
+    }
+
+    /// Rays at lattice points of a flat sheet, many exactly on its edges and
+    /// vertices, cross one triangle.
+    #[test]
+    fn a_sheet_counts_once_even_at_edges_and_vertices() {
+        let at = |x: i32, z: i32| DVec3::new(f64::from(x), 0.0, f64::from(z));
+        let mut sheet = Vec::new();
+        for (x, z) in (-3..3).flat_map(|x| (-3..3).map(move |z| (x, z))) {
+            sheet.push([at(x, z), at(x + 1, z + 1), at(x + 1, z)]);
+            sheet.push([at(x, z), at(x, z + 1), at(x + 1, z + 1)]);
+        }
+        let bvh = Bvh::new(&sheet);
+        for direction in [DVec3::NEG_Y, DVec3::new(0.25, -1.0, -0.5)] {
+            for (i, k) in (-8..=8).flat_map(|i| (-8..=8).map(move |k| (i, k))) {
+                let target = at(i, k) * 0.25;
+                let ray = Ray::new(target - direction, direction);
+                assert_eq!(bvh.count(&ray, 0.0..2.0, |_| true), 1, "{target}");
+            }
         }
     }
 

@@ -28,3 +28,34 @@ pub(super) fn scene() -> Scene {
         vec![floor(4.0), solid("plate", plate, STEEL)],
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::HardLight;
+    use crate::oracle::hard::HardOracle;
+
+    /// From every point of the light, the closed plate of the scene blocks what
+    /// the flat square of the closed form blocks.
+    #[test]
+    fn the_bevelled_plate_blocks_like_a_flat_square() {
+        let scene = scene();
+        let on_light = |k: i32| (f64::from(k) + 0.5) / 4.0 * PLATES.light_half; // k in -4..4
+        let on_floor = |k: i32| 0.097 * f64::from(k);
+        for (s, t) in (-4..4).flat_map(|s| (-4..4).map(move |t| (s, t))) {
+            let from = DVec3::new(on_light(s), PLATES.floor_distance, on_light(t));
+            let oracle = HardOracle::new(&scene, HardLight::Point(from));
+            for (i, k) in (-12..12).flat_map(|i| (-12..12).map(move |k| (i, k))) {
+                let at = DVec3::new(on_floor(i), 0.0, on_floor(k));
+                let share = PLATES.plate_distance / PLATES.floor_distance;
+                let on_plate = (from + (at - from) * share).abs();
+                let blocked = on_plate.x < PLATES.plate_half && on_plate.z < PLATES.plate_half;
+                assert_eq!(
+                    oracle.shadow_count_at(at),
+                    u32::from(blocked),
+                    "{from} {at}"
+                );
+            }
+        }
+    }
+}

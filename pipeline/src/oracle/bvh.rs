@@ -353,6 +353,18 @@ mod tests {
         }
     }
 
+    /// Overlapping sheets in one plane, the earlier ones later in leaf order.
+    #[test]
+    fn of_coincident_triangles_the_lowest_index_is_hit() {
+        let sheet = |reach: f64| [[-1.0, -1.0], [reach, 1.0], [-1.0, 1.0]];
+        let flat = |[x, z]: [f64; 2]| DVec3::new(x, 0.0, z);
+        let sheets: Vec<_> = (0..12)
+            .map(|k| sheet(40.0 - 3.0 * f64::from(k)).map(flat))
+            .collect();
+        let ray = Ray::new(DVec3::new(-0.5, 1.0, 0.5), DVec3::NEG_Y);
+        assert_eq!(Bvh::new(&sheets).closest(&ray, 0.0..9.0), Some((0, 1.0)));
+    }
+
     #[test]
     fn empty_hierarchy_has_no_hits() {
         let ray = Ray::new(DVec3::ZERO, DVec3::X);

@@ -400,6 +400,19 @@ mod tests {
         assert!(truth.pixels.iter().any(PixelTruth::is_lit));
     }
 
+    /// A lit surface moved into its own caster by the depth tolerance must not
+    /// be taken for shadowed by itself.
+    #[test]
+    fn lit_surfaces_are_interior_under_depth_tolerance() {
+        let scene = builtin::build("peer-a").unwrap();
+        let tolerance = EdgeTolerance::HALF_PIXEL_AND_DEPTH;
+        let truth = HardTruth::of_scene(&scene, 0, [96; 2], tolerance);
+        let lit_caster = |p: &&PixelTruth| p.is_lit() && p.centre.hit.unwrap().object == 1;
+        let interior = |p: &&PixelTruth| p.interior && lit_caster(p);
+        let lit = truth.pixels.iter().filter(lit_caster).count();
+        assert!(truth.pixels.iter().filter(interior).count() > lit / 2 && lit > 200);
+    }
+
     #[test]
     fn a_larger_reach_keeps_fewer_pixels() {
         let scene = builtin::build("cylinder").unwrap();

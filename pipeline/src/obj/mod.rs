@@ -1,6 +1,6 @@
 //! Meshes from Wavefront OBJ files.
 //!
-//! `tobj` builds the mesh. Before it, [`scan`] reads the text once on its own,
+//! `tobj` builds the mesh. Before it, a scan reads the text once on its own,
 //! because tobj's errors name no line, it renumbers vertices object by object
 //! (so a solid split over several `g` groups would fall apart), and its fan
 //! triangulation does not say when a polygon was not convex. The scan rejects

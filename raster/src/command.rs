@@ -99,7 +99,7 @@ impl VertexBuffer {
 }
 
 /// The vertices that a range of indices refers to.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Referenced {
     /// Vertex numbers, ascending, each once.
     pub(crate) vertices: Vec<u32>,
@@ -132,6 +132,7 @@ impl Referenced {
 #[derive(Debug)]
 pub struct IndexBuffer {
     indices: Vec<u32>,
+    largest: Option<u32>,
     referenced: OnceLock<Referenced>,
 }
 
@@ -139,13 +140,20 @@ impl IndexBuffer {
     /// Takes the indices.
     #[must_use]
     pub fn new(indices: Vec<u32>) -> Self {
-        Self { indices, referenced: OnceLock::new() }
+        let largest = indices.iter().copied().max();
+        Self { indices, largest, referenced: OnceLock::new() }
     }
 
     /// The indices.
     #[must_use]
     pub fn indices(&self) -> &[u32] {
         &self.indices
+    }
+
+    /// The largest index; `None` where there is none.
+    #[must_use]
+    pub fn largest(&self) -> Option<u32> {
+        self.largest
     }
 
     /// What the whole buffer refers to, found once.

@@ -1,20 +1,79 @@
 //! The emulated GPU: a tiled, SIMD, bit-exact, traffic-counting rasteriser.
-
+//!
+//! State, commands and formats in the vocabulary of WebGPU and Vulkan; shaders
+//! as Rust code over lanes or as closures; the same bits for every thread count,
+//! execution tile and SIMD level; every access to depth, stencil, colour and
+//! textures counted. It knows nothing of shadows, files or serialisation.
+//!
+//! ```
+//! use gnomon_raster::shader::{FragmentOutputs, ScalarFragmentOutput, ScalarVertexOutput, per_fragment, per_vertex};
+//! use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
+//! use gnomon_raster::{
+//!     ColorAttachment, CommandList, Draw, Format, Gpu, GpuConfig, LoadOp, RenderPass, RenderPipeline, StoreOp,
+//!     Subresource, TextureDescriptor,
+//! };
+//! use std::sync::Arc;
+//!
+//! // A triangle over the lower left half of a 4×4 image.
+//! let corners = [[-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+//! let pipeline = Arc::new(RenderPipeline {
+//!     label: "orange".into(),
+//!     vertex: per_vertex(&[], move |v| {
+//!         let [x, y] = corners[v.vertex_index as usize];
+//!         ScalarVertexOutput { position: [x, y, 0.5, 1.0], ..Default::default() }
+//!     }),
+//!     fragment: Some(per_fragment(FragmentOutputs::default(), |_| {
+//!         ScalarFragmentOutput::color([1.0, 0.5, 0.0, 1.0])
+//!     })),
+//!     primitive: PrimitiveState::default(),
+//!     depth_stencil: DepthStencilState::default(),
+//!     color_targets: vec![ColorTargetState::OPAQUE],
+//! });
+//!
+//! let mut gpu = Gpu::new(GpuConfig { threads: 1, ..GpuConfig::default() })?;
+//! let image = gpu.create_texture(&TextureDescriptor::d2("image", Format::Rgba8Unorm, 4, 4))?;
+//! let report = gpu.submit(&CommandList {
+//!     passes: vec![RenderPass {
+//!         label: "main".into(),
+//!         color: vec![ColorAttachment {
+//!             texture: image,
+//!             subresource: Subresource::default(),
+//!             load: LoadOp::Clear([0.0; 4]),
+//!             store: StoreOp::Store,
+//!         }],
+//!         depth_stencil: None,
+//!         draws: vec![Draw::vertices_only("triangle", &pipeline, 3)],
+//!     }],
+//! })?;
+//!
+//! let texels = gpu.texture(image)?.read_raw(Subresource::default())?;
+//! let covered: Vec<u32> = texels.iter().map(|t| u32::from(*t == [255, 128, 0, 255])).collect();
+//! assert_eq!(covered, [1, 0, 0, 0, 1, 1, 0, 0, 1, 1, 1, 0, 1, 1, 1, 1]);
+//! let counted = report.passes[0].draws[0].counters;
+//! assert_eq!(counted.fragments.written, 10);
+//! assert_eq!(counted.traffic.color[0].write_bytes, 40);
+//! # Ok::<(), gnomon_raster::Error>(())
+//! ```
 
 mod command;
 mod counters;
 mod error;
+mod execute;
 pub mod format;
+mod geometry;
+mod gpu;
 mod observer;
 pub mod shader;
 pub mod simd;
 pub mod state;
 pub mod texture;
+mod tile;
 
 pub use command::*;
 pub use counters::*;
 pub use error::Error;
 pub use format::Format;
+pub use gpu::{DrawReport, Gpu, GpuConfig, PassReport, SubmitReport};
 pub use observer::{AccessObserver, BlockAccess};
 pub use simd::{F32, I32, LANES, Lanes, Mask, SimdLevel, U32};
 pub use texture::{Subresource, Texture, TextureDescriptor, TextureDimension, TextureId};

@@ -9,7 +9,7 @@ use crate::simd::{F32, LANES, Lanes, SimdLevel, with_lanes};
 
 pub(crate) trait ErasedVertexShader: Send + Sync {
     fn varyings(&self) -> &[Interpolation];
-    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_>);
+    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_, '_>);
 }
 
 pub(crate) trait ErasedFragmentShader: Send + Sync {
@@ -22,7 +22,7 @@ impl<V: VertexShader> ErasedVertexShader for V {
         VertexShader::varyings(self)
     }
 
-    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_>) {
+    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_, '_>) {
         with_lanes!(level, l => shade_batch(self, l, batch, out));
     }
 }
@@ -42,7 +42,7 @@ fn shade_batch<L: Lanes, V: VertexShader>(
     shader: &V,
     l: L,
     batch: &VertexBatch<'_>,
-    out: &mut VertexOutput<'_>,
+    out: &mut VertexOutput<'_, '_>,
 ) {
     let n = VertexShader::varyings(shader).len().min(MAX_VARYINGS);
     let mut varyings = [[0.0f32; LANES]; MAX_VARYINGS];
@@ -56,9 +56,8 @@ fn shade_batch<L: Lanes, V: VertexShader>(
         for (slot, p) in out.position.iter_mut().zip(v.position) {
             p.store((&mut slot[at.clone()]).try_into().expect("whole packets"));
         }
-        for (i, v) in varyings[..n].iter().enumerate() {
-            let o = i * out.padded;
-            out.varyings[o + at.start..o + at.end].copy_from_slice(v);
+        for (slot, v) in out.varyings.iter_mut().zip(&varyings[..n]) {
+            slot[at.clone()].copy_from_slice(v);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::command::BoundTexture;
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32};
+use crate::tile::ShaderDepth;
 use crate::{MAX_COLOR_ATTACHMENTS, MAX_TEXTURES, MAX_VARYINGS};
 
 /// What a fragment shader may do; the tests that run before it depend on this.
@@ -73,8 +74,8 @@ pub(crate) struct ShadeBlock<'a> {
     /// Bit `8·row + column`: the fragment is to be shaded.
     pub(crate) live: u64,
     pub(crate) planes: &'a VaryingPlanes,
-    /// Depth of all 64 fragments in 0..=1.
-    pub(crate) depth: &'a [f32; 64],
+    /// Depth of the block's fragments.
+    pub(crate) depth: ShaderDepth,
     pub(crate) front_facing: bool,
     pub(crate) primitive: u32,
     pub(crate) textures: &'a [BoundTexture<'a>],
@@ -90,7 +91,7 @@ pub struct Fragment<'a, L: Lanes> {
     pub(super) live: u16,
     pub(super) planes: &'a VaryingPlanes,
     pub(super) w: F32<L>,
-    pub(super) depth: &'a [f32; LANES],
+    pub(super) depth: ShaderDepth,
     pub(super) front_facing: bool,
     pub(super) primitive: u32,
     pub(crate) textures: &'a [BoundTexture<'a>],
@@ -108,7 +109,6 @@ impl<'a, L: Lanes> Fragment<'a, L> {
         let live = (b.live >> (16 * packet)) as u16;
         let out = &mut b.out[packet];
         out.discarded = 0;
-        let depth: &[f32; LANES] = b.depth[16 * packet..16 * packet + 16].try_into().expect("16 of 64");
         let mut f = Fragment {
             l,
             x: b.x,
@@ -116,7 +116,7 @@ impl<'a, L: Lanes> Fragment<'a, L> {
             live,
             planes: b.planes,
             w: F32::splat(l, 1.0),
-            depth,
+            depth: b.depth,
             front_facing: b.front_facing,
             primitive: b.primitive,
             textures: b.textures,
@@ -175,7 +175,7 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     /// Fragment depth in 0..=1.
     #[inline(always)]
     pub fn depth(&self) -> F32<L> {
-        F32::from_array(self.l, self.depth)
+        self.depth.packet(self.l, (self.y % 8 / 2) as usize)
     }
 
     /// Whether the primitive faces the viewer.

@@ -29,12 +29,10 @@ pub(crate) struct VertexBatch<'a> {
 
 /// Where shaded vertices go: one array a component, as long as the batch
 /// rounded up to whole packets.
-pub(crate) struct VertexOutput<'a> {
+pub(crate) struct VertexOutput<'a, 'b> {
     pub(crate) position: [&'a mut [f32]; 4],
-    /// Varying-major: `varyings[i * padded + vertex]`.
-    pub(crate) varyings: &'a mut [f32],
-    /// Length of one component's array.
-    pub(crate) padded: usize,
+    /// One array a varying.
+    pub(crate) varyings: &'a mut [&'b mut [f32]],
 }
 
 /// Input and output of 16 vertices.

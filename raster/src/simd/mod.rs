@@ -12,11 +12,13 @@
 //! lane `i` is column `i % 8`, row `i / 8`, so that a packet holds four whole
 //! 2×2 quads and derivatives are lane permutations.
 
+mod double;
 mod float;
 mod int;
 mod level;
 mod mask;
 
+pub(crate) use double::{F64, round_to_i32};
 pub use float::F32;
 pub use int::{I32, U32};
 pub use level::{SimdLevel, UnknownSimdLevel};
@@ -46,6 +48,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn round(self, v: fearless_simd::f32x16<Self::Isa>) -> fearless_simd::f32x16<Self::Isa> {
         v
     }
+}
+
+/// Runs `f` in a function of its own, compiled for the level: a seam that keeps
+/// inlining from multiplying the code.
+#[inline(always)]
+pub(crate) fn outlined<L: Lanes, T>(l: L, f: impl FnOnce() -> T) -> T {
+    l.isa().vectorize(f)
 }
 
 impl<S: Simd> Lanes for S {

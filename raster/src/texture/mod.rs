@@ -7,4 +7,5 @@ mod resource;
 pub use layout::BLOCK;
 pub(crate) use layout::Layout;
 pub(crate) use plane::{Block, Block4, ColorBlocks, DepthPlane, HizEntry, Plane};
+pub(crate) use resource::{encode, encode_depth};
 pub use resource::{ColorTexel, Subresource, Texture, TextureDescriptor, TextureDimension, TextureId};

@@ -1,0 +1,348 @@
+//! One render pass: its draws in batches, each through vertices, chunks, tiles.
+
+use rayon::prelude::*;
+
+use super::prepare::{Prepared, Target, prepare};
+use super::split::{self, Fill, Lent};
+use crate::command::{Draw, Referenced, RenderPass};
+use crate::counters::{AccessSizes, Counters, Traffic};
+use crate::geometry::{Chunk, ChunkInput, ShadedVertices, TileGrid, process_chunk, shade_part};
+use crate::gpu::{DrawReport, Gpu, PassReport};
+use crate::observer::BlockAccess;
+use crate::shader::VertexBatch;
+use crate::tile::{ChunkRef, DrawWork, Recorder, Scratch, Silent, TileTarget, run_tile};
+
+/// Primitives of a chunk: enough to fill packets, few enough to share out.
+const CHUNK: u32 = 1024;
+/// Vertices that one worker shades at a time.
+const VERTEX_RUN: usize = 2048;
+/// Primitives of a batch; their set-ups wait in memory until the tiles have run.
+const BATCH: u32 = 64 * CHUNK;
+
+/// Executes a validated pass. Accesses go to `accesses` where it is given.
+pub(super) fn execute(gpu: &mut Gpu, pass: &RenderPass, accesses: Option<&mut Vec<BlockAccess>>) -> PassReport {
+    let mut lent = split::lend(gpu, pass);
+    let pool = gpu.pool.take();
+    let run = || Executor::new(gpu, pass, &mut lent).run(accesses);
+    let counters = match &pool {
+        Some(pool) => pool.install(run),
+        None => run(),
+    };
+    let clear = split::clear_traffic(pass, &lent);
+    split::give_back(gpu, pass, lent);
+    gpu.pool = pool;
+    let draws = pass.draws.iter().zip(counters);
+    PassReport {
+        label: pass.label.clone(),
+        draws: draws.map(|(d, counters)| DrawReport { label: d.label.clone(), counters }).collect(),
+        clear,
+        time: std::time::Duration::ZERO,
+    }
+}
+
+/// Vertices of one instance of a draw.
+struct Unit<'a> {
+    draw: usize,
+    instance: u32,
+    /// Vertex numbers and, with indices, positions among them.
+    referenced: std::borrow::Cow<'a, Referenced>,
+    primitives: u32,
+    /// Number of the first primitive in the draw.
+    first_primitive: u32,
+}
+
+/// A run of primitives of a unit.
+#[derive(Clone, Copy)]
+struct Job {
+    unit: usize,
+    first: u32,
+    primitives: u32,
+}
+
+struct Executor<'a> {
+    gpu: &'a Gpu,
+    pass: &'a RenderPass,
+    lent: &'a mut Lent,
+    prepared: Vec<Prepared<'a>>,
+    parallel: bool,
+}
+
+impl<'a> Executor<'a> {
+    fn new(gpu: &'a Gpu, pass: &'a RenderPass, lent: &'a mut Lent) -> Self {
+        let target = Target { width: lent.layout.width, height: lent.layout.height, sizes: lent.sizes };
+        let prepared = pass.draws.iter().map(|d| prepare(gpu, &target, d)).collect();
+        Self { gpu, pass, lent, prepared, parallel: gpu.config.threads != 1 }
+    }
+
+    fn run(mut self, accesses: Option<&mut Vec<BlockAccess>>) -> Vec<Counters> {
+        let units = self.units();
+        let mut counters: Vec<Counters> =
+            self.prepared.iter().enumerate().map(|(i, p)| vertex_traffic(p.draw, &units, i)).collect();
+        let batches = batches(&units);
+        let fills = (split::loads(self.pass, &self.lent.sizes), split::stores(self.pass));
+        let mut recorded = accesses;
+        let last = batches.len() - 1;
+        for (b, jobs) in batches.iter().enumerate() {
+            let shaded = self.shade(&units, jobs);
+            let chunks = self.chunks(&units, jobs, &shaded);
+            for (job, chunk) in jobs.iter().zip(&chunks) {
+                let c = &mut counters[units[job.unit].draw];
+                c.add(&Counters { primitives: chunk.counters, ..Counters::default() });
+            }
+            let before = (b == 0).then_some(&fills.0);
+            let after = (b == last).then_some(&fills.1);
+            self.tiles(&units, jobs, &shaded, &chunks, before, after, &mut counters, recorded.as_deref_mut());
+        }
+        if let Some(r) = recorded {
+            r.par_sort_unstable_by_key(|a| (a.draw, a.primitive, a.piece, a.block[1], a.block[0]));
+        }
+        for (c, p) in counters.iter_mut().zip(&self.prepared) {
+            c.settle(&p.sizes);
+        }
+        counters
+    }
+
+    fn units(&self) -> Vec<Unit<'a>> {
+        let mut units = Vec::new();
+        for (number, p) in self.prepared.iter().enumerate() {
+            let d = p.draw;
+            let primitives = d.count / d.pipeline.primitive.topology.vertices();
+            if primitives == 0 {
+                continue;
+            }
+            for instance in 0..d.instances {
+                units.push(Unit {
+                    draw: number,
+                    instance,
+                    referenced: referenced(d, primitives),
+                    primitives,
+                    first_primitive: instance * primitives,
+                });
+            }
+        }
+        units
+    }
+
+    /// Shades the vertices of the units of `jobs`; others stay empty.
+    fn shade(&self, units: &[Unit<'_>], jobs: &[Job]) -> Vec<ShadedVertices> {
+        let mut shaded: Vec<ShadedVertices> = units.iter().map(|_| ShadedVertices::default()).collect();
+        let mut work = Vec::new();
+        let mut rest = &mut shaded[..];
+        let mut offset = 0;
+        let mut needed: Vec<usize> = jobs.iter().map(|j| j.unit).collect();
+        needed.dedup();
+        for &u in &needed {
+            let (_, tail) = rest.split_at_mut(u - offset);
+            let (out, tail) = tail.split_first_mut().expect("the unit exists");
+            (rest, offset) = (tail, u + 1);
+            let unit = &units[u];
+            out.resize(unit.referenced.vertices.len(), self.prepared[unit.draw].geometry.varyings);
+            let runs = unit.referenced.vertices.chunks(VERTEX_RUN);
+            work.extend(out.parts(VERTEX_RUN).into_iter().zip(runs).map(|(part, run)| (unit, part, run)));
+        }
+        let shade = |(unit, mut part, vertices): (&Unit<'_>, _, &[u32])| {
+            let p = &self.prepared[unit.draw];
+            let buffer = p.draw.vertices.as_deref();
+            let batch = VertexBatch {
+                data: buffer.map_or(&[], |b| &b.data),
+                stride: buffer.map_or(0, |b| b.stride),
+                vertices,
+                instance: unit.instance,
+            };
+            let shader = &*p.draw.pipeline.vertex.0;
+            shade_part(self.gpu.config.simd, shader, &p.geometry, &batch, &mut part);
+        };
+        if self.parallel && work.len() > 1 {
+            work.into_par_iter().for_each(shade);
+        } else {
+            work.into_iter().for_each(shade);
+        }
+        shaded
+    }
+
+    fn chunks(&self, units: &[Unit<'_>], jobs: &[Job], shaded: &[ShadedVertices]) -> Vec<Chunk> {
+        let grid = self.grid();
+        let one = |job: &Job| {
+            let unit = &units[job.unit];
+            let p = &self.prepared[unit.draw];
+            let per = p.geometry.topology.vertices();
+            let local = &unit.referenced.local;
+            let range = (job.first * per) as usize..((job.first + job.primitives) * per) as usize;
+            let input = ChunkInput {
+                state: &p.geometry,
+                shaded: &shaded[job.unit],
+                indices: (!local.is_empty()).then(|| &local[range.clone()]),
+                first: range.start as u32,
+                primitives: job.primitives,
+                first_primitive: unit.first_primitive + job.first,
+            };
+            process_chunk(self.gpu.config.simd, &input, &grid)
+        };
+        if self.parallel && jobs.len() > 1 {
+            jobs.par_iter().map(one).collect()
+        } else {
+            jobs.iter().map(one).collect()
+        }
+    }
+
+    fn grid(&self) -> TileGrid {
+        let l = &self.lent.layout;
+        TileGrid::new(l.tile_side(self.gpu.config.tile), l.width, l.height)
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "what one batch consists of")]
+    fn tiles(
+        &mut self,
+        units: &[Unit<'_>],
+        jobs: &[Job],
+        shaded: &[ShadedVertices],
+        chunks: &[Chunk],
+        before: Option<&Fill>,
+        after: Option<&Fill>,
+        counters: &mut [Counters],
+        accesses: Option<&mut Vec<BlockAccess>>,
+    ) {
+        let grid = self.grid();
+        let stage = TileStage {
+            gpu: self.gpu,
+            grid,
+            work: draw_work(units, jobs, shaded, chunks, &self.prepared),
+            draws: self.prepared.len(),
+            sizes: self.lent.sizes,
+            before,
+            after,
+            parallel: self.parallel,
+        };
+        let mut tiles = self.lent.tiles(self.gpu.config.tile);
+        let scratch = match accesses {
+            None => stage.run(&mut tiles, || Silent, |_, _| Silent).0,
+            Some(all) => {
+                let (scratch, found) = stage.run(&mut tiles, Vec::new, |mut a: Vec<BlockAccess>, b| {
+                    a.extend(b);
+                    a
+                });
+                all.extend(found);
+                scratch
+            }
+        };
+        for (c, s) in counters.iter_mut().zip(scratch.counters) {
+            c.add(&s.into_counters());
+        }
+    }
+}
+
+/// The tile stage of one batch.
+struct TileStage<'a> {
+    gpu: &'a Gpu,
+    grid: TileGrid,
+    work: Vec<DrawWork<'a>>,
+    draws: usize,
+    sizes: AccessSizes,
+    before: Option<&'a Fill>,
+    after: Option<&'a Fill>,
+    parallel: bool,
+}
+
+impl TileStage<'_> {
+    fn run<R: Recorder>(
+        &self,
+        tiles: &mut [TileTarget<'_>],
+        recorder: impl Fn() -> R + Sync + Send,
+        merge: impl Fn(R, R) -> R + Sync + Send,
+    ) -> (Scratch, R) {
+        let start = || (Scratch::new(self.draws), recorder());
+        let step = |(mut scratch, mut r): (Scratch, R), tile: &mut TileTarget<'_>| {
+            self.tile(tile, &mut scratch, &mut r);
+            (scratch, r)
+        };
+        if !self.parallel {
+            return tiles.iter_mut().fold(start(), step);
+        }
+        tiles.par_iter_mut().with_max_len(1).fold(start, step).reduce(start, |(mut a, ra), (b, rb)| {
+            a.absorb(b);
+            (a, merge(ra, rb))
+        })
+    }
+
+    fn tile<R: Recorder>(&self, tile: &mut TileTarget<'_>, scratch: &mut Scratch, recorder: &mut R) {
+        if let Some(fill) = self.before {
+            fill.apply(tile, &self.sizes);
+        }
+        let number = (tile.y >> self.grid.shift) * self.grid.across + (tile.x >> self.grid.shift);
+        run_tile(self.gpu.config.simd, &self.work, number as usize, tile, scratch, recorder);
+        if let Some(fill) = self.after {
+            fill.apply(tile, &self.sizes);
+        }
+    }
+}
+
+/// Chunks grouped by draw, in submission order.
+fn draw_work<'a>(
+    units: &[Unit<'_>],
+    jobs: &[Job],
+    shaded: &'a [ShadedVertices],
+    chunks: &'a [Chunk],
+    prepared: &'a [Prepared<'a>],
+) -> Vec<DrawWork<'a>> {
+    let mut work: Vec<DrawWork<'a>> = Vec::new();
+    for (job, chunk) in jobs.iter().zip(chunks) {
+        let draw = units[job.unit].draw;
+        let chunk = ChunkRef { chunk, shaded: &shaded[job.unit] };
+        match work.last_mut() {
+            Some(w) if w.draw == draw => w.chunks.push(chunk),
+            _ => work.push(DrawWork { draw, config: &prepared[draw].config, chunks: vec![chunk] }),
+        }
+    }
+    work
+}
+
+/// Chunks of all units, in batches; at least one batch, for the load operations.
+fn batches(units: &[Unit<'_>]) -> Vec<Vec<Job>> {
+    let mut batches = vec![Vec::new()];
+    let mut room = BATCH;
+    for (u, unit) in units.iter().enumerate() {
+        for first in (0..unit.primitives).step_by(CHUNK as usize) {
+            let primitives = CHUNK.min(unit.primitives - first);
+            if room < primitives {
+                batches.push(Vec::new());
+                room = BATCH;
+            }
+            room -= primitives;
+            batches.last_mut().expect("never empty").push(Job { unit: u, first, primitives });
+        }
+    }
+    batches
+}
+
+fn referenced(d: &Draw, primitives: u32) -> std::borrow::Cow<'_, Referenced> {
+    use std::borrow::Cow;
+    let used = (primitives * d.pipeline.primitive.topology.vertices()) as usize;
+    let first = d.first as usize;
+    match &d.indices {
+        None => {
+            Cow::Owned(Referenced { vertices: (d.first..d.first + used as u32).collect(), local: Vec::new() })
+        }
+        Some(b) if first == 0 && used == b.indices().len() => Cow::Borrowed(b.referenced()),
+        Some(b) => Cow::Owned(Referenced::of(&b.indices()[first..first + used])),
+    }
+}
+
+/// Vertex and index traffic of draw number `number` (rules §8).
+fn vertex_traffic(d: &Draw, units: &[Unit<'_>], number: usize) -> Counters {
+    let mut c = Counters::default();
+    let mine = || units.iter().filter(|u| u.draw == number);
+    let invocations: u64 = mine().map(|u| u.referenced.vertices.len() as u64).sum();
+    c.primitives.vertex_shader_invocations = invocations;
+    let read = |accesses: u64, bytes: u64| Traffic {
+        read_accesses: accesses,
+        read_bytes: accesses * bytes,
+        ..Traffic::default()
+    };
+    if let Some(v) = &d.vertices {
+        c.traffic.vertex = read(invocations, 4 * v.stride as u64);
+    }
+    if d.indices.is_some() {
+        let per = u64::from(d.pipeline.primitive.topology.vertices());
+        c.traffic.index = read(mine().map(|u| u64::from(u.primitives) * per).sum(), 4);
+    }    c
+}

@@ -1,0 +1,157 @@
+//! The emulated GPU: textures, and the execution of command lists.
+
+use std::time::Duration;
+
+use crate::command::CommandList;
+use crate::counters::{ClientTraffic, Counters};
+use crate::error::Error;
+use crate::execute;
+use crate::observer::AccessObserver;
+use crate::simd::SimdLevel;
+use crate::texture::{Texture, TextureDescriptor, TextureId};
+
+/// How to execute. None of it changes a bit of the results or, but for `skip`,
+/// of the counters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GpuConfig {
+    /// Worker threads; 0 for one per core.
+    pub threads: usize,
+    /// Side of execution tiles in pixels: 16, 32, 64 or 128.
+    pub tile: u32,
+    /// Instruction set.
+    pub simd: SimdLevel,
+    /// Use zmin/zmax of 8×8 blocks to skip work.
+    pub skip: bool,
+}
+
+impl Default for GpuConfig {
+    fn default() -> Self {
+        Self { threads: 0, tile: 64, simd: SimdLevel::detect(), skip: true }
+    }
+}
+
+/// A GPU and its textures.
+pub struct Gpu {
+    pub(crate) config: GpuConfig,
+    pub(crate) pool: Option<rayon::ThreadPool>,
+    pub(crate) textures: Vec<Texture>,
+}
+
+/// What a draw counted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawReport {
+    /// The draw's label.
+    pub label: String,
+    /// Its counters.
+    pub counters: Counters,
+}
+
+/// What a render pass counted.
+#[derive(Clone, Debug)]
+pub struct PassReport {
+    /// The pass's label.
+    pub label: String,
+    /// Its draws in order.
+    pub draws: Vec<DrawReport>,
+    /// Writes of clears.
+    pub clear: ClientTraffic,
+    /// Wall-clock time of the execution.
+    pub time: Duration,
+}
+
+impl PassReport {
+    /// Sum over the draws, clears left out.
+    #[must_use]
+    pub fn totals(&self) -> Counters {
+        let mut sum = Counters::default();
+        self.draws.iter().for_each(|d| sum.add(&d.counters));
+        sum
+    }
+}
+
+/// What a command list counted.
+#[derive(Clone, Debug, Default)]
+pub struct SubmitReport {
+    /// Its passes in order.
+    pub passes: Vec<PassReport>,
+}
+
+impl Gpu {
+    /// Starts the worker threads.
+    ///
+    /// # Errors
+    /// For a tile size that is not supported, threads that cannot be started, or
+    /// a floating-point unit that is set to flush denormals.
+    pub fn new(config: GpuConfig) -> Result<Self, Error> {
+        if ![16, 32, 64, 128].contains(&config.tile) {
+            return Err(Error::TileSize { given: config.tile });
+        }
+        if execute::denormals_are_flushed() {
+            return Err(Error::DenormalsFlushed);
+        }
+        let pool = match config.threads {
+            1 => None,
+            n => Some(execute::start_pool(n)?),
+        };
+        Ok(Self { config, pool, textures: Vec::new() })
+    }
+
+    /// How it executes.
+    #[must_use]
+    pub fn config(&self) -> GpuConfig {
+        self.config
+    }
+
+    /// Number of worker threads.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+    }
+
+    /// Creates a texture of zeros.
+    ///
+    /// # Errors
+    /// For sizes or levels that are not possible.
+    pub fn create_texture(&mut self, desc: &TextureDescriptor) -> Result<TextureId, Error> {
+        let texture = Texture::new(desc)?;
+        self.textures.push(texture);
+        Ok(TextureId(self.textures.len() as u32 - 1))
+    }
+
+    /// A texture, to read it back.
+    ///
+    /// # Errors
+    /// Where there is none of that id.
+    pub fn texture(&self, id: TextureId) -> Result<&Texture, Error> {
+        self.textures.get(id.0 as usize).ok_or(Error::NoSuchTexture { id: id.0, count: self.textures.len() })
+    }
+
+    /// A texture, to fill it.
+    ///
+    /// # Errors
+    /// Where there is none of that id.
+    pub fn texture_mut(&mut self, id: TextureId) -> Result<&mut Texture, Error> {
+        let count = self.textures.len();
+        self.textures.get_mut(id.0 as usize).ok_or(Error::NoSuchTexture { id: id.0, count })
+    }
+
+    /// Validates all of `list`, then executes it.
+    ///
+    /// # Errors
+    /// For invalid use; nothing has been executed then.
+    pub fn submit(&mut self, list: &CommandList) -> Result<SubmitReport, Error> {
+        execute::submit(self, list, None)
+    }
+
+    /// As [`Gpu::submit`], and hands every block-level access to `observer`.
+    ///
+    /// # Errors
+    /// As [`Gpu::submit`].
+    pub fn submit_observed(
+        &mut self,
+        list: &CommandList,
+        observer: &mut dyn AccessObserver,
+    ) -> Result<SubmitReport, Error> {
+        execute::submit(self, list, Some(observer))
+    }
+}

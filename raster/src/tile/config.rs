@@ -1,0 +1,101 @@
+//! A draw's state in the form in which the tile stage uses it.
+
+use crate::command::BoundTexture;
+use crate::format::Format;
+use crate::geometry::DepthEncoding;
+use crate::shader::ErasedFragmentShader;
+use crate::state::{BlendState, ColorWrites, CompareFunction, StencilFaceState, StencilOperation};
+
+/// One facing's stencil state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StencilFace {
+    pub(crate) state: StencilFaceState,
+    pub(crate) reference: u8,
+    /// The stage does anything at all.
+    pub(crate) enabled: bool,
+    /// Which of fail, depth fail and pass can change a value.
+    pub(crate) effective: [bool; 3],
+}
+
+impl StencilFace {
+    pub(crate) fn new(state: StencilFaceState, reference: u8, attached: bool) -> Self {
+        let effective = [state.fail_op, state.depth_fail_op, state.pass_op]
+            .map(|op| attached && op != StencilOperation::Keep && state.write_mask != 0);
+        let enabled = attached && (state.compare != CompareFunction::Always || effective.contains(&true));
+        Self { state, reference, enabled, effective }
+    }
+
+    /// Whether something can happen to fragments that fail the depth test.
+    pub(crate) fn acts_on_depth_failure(&self) -> bool {
+        self.effective[0] || self.effective[1]
+    }
+}
+
+/// One colour target.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TargetConfig {
+    pub(crate) format: Format,
+    pub(crate) blend: Option<BlendState>,
+    /// Channels of the format that are written.
+    pub(crate) mask: ColorWrites,
+    /// The destination is read.
+    pub(crate) reads: bool,
+}
+
+impl TargetConfig {
+    pub(crate) fn new(format: Format, blend: Option<BlendState>, writes: ColorWrites) -> Self {
+        let all = (1u8 << format.channels()) - 1;
+        let mask = ColorWrites(writes.0 & all);
+        let uses_dst = |c: &crate::state::BlendComponent| {
+            use crate::state::{BlendFactor, BlendOperation};
+            matches!(c.operation, BlendOperation::Min | BlendOperation::Max)
+                || c.dst_factor != BlendFactor::Zero
+                || c.src_factor.reads_dst()
+        };
+        let blends = blend.is_some_and(|b| {
+            (mask.0 & 7 != 0 && uses_dst(&b.color)) || (mask.0 & 8 != 0 && uses_dst(&b.alpha))
+        });
+        Self { format, blend, mask, reads: mask.0 != 0 && (blends || mask.0 != all) }
+    }
+}
+
+/// Everything of a draw that the tile stage looks at.
+pub(crate) struct DrawConfig<'a> {
+    pub(crate) encoding: DepthEncoding,
+    /// Pixels that may be drawn: x0, y0, x1, y1, half-open.
+    pub(crate) rect: [i32; 4],
+    /// There is a depth-stencil attachment.
+    pub(crate) attached: bool,
+    pub(crate) compare: CompareFunction,
+    pub(crate) depth_write: bool,
+    /// Encoded depth bounds.
+    pub(crate) bounds: Option<[i32; 2]>,
+    /// Encoded depth range of the viewport.
+    pub(crate) depth_range: [i32; 2],
+    pub(crate) depth_clamp: bool,
+    /// zmin/zmax tests apply.
+    pub(crate) hiz: bool,
+    /// Fragment depth is looked at by anything.
+    pub(crate) needs_depth: bool,
+    /// Front, back.
+    pub(crate) stencil: [StencilFace; 2],
+    pub(crate) targets: Vec<TargetConfig>,
+    pub(crate) blend_constant: [f32; 4],
+    pub(crate) shader: Option<&'a dyn ErasedFragmentShader>,
+    pub(crate) discards: bool,
+    pub(crate) writes_shader_depth: bool,
+    /// How many varyings, and which are divided by w or flat.
+    pub(crate) varyings: usize,
+    pub(crate) perspective: u32,
+    pub(crate) flat: u32,
+    pub(crate) clip_planes: Vec<[f32; 4]>,
+    pub(crate) textures: Vec<BoundTexture<'a>>,
+}
+
+impl DrawConfig<'_> {
+    /// Tests wait for the shader (rules §7).
+    #[inline(always)]
+    pub(crate) fn is_late(&self, face: &StencilFace) -> bool {
+        self.writes_shader_depth || (self.discards && (self.depth_write || face.effective.contains(&true)))
+    }
+}

@@ -1,0 +1,455 @@
+//! Colour output: conversion, blending and the masked store (rules §7, Colour).
+
+use fearless_simd::{Bytes as _, SimdBase as _, SimdInt as _, SimdMask as _, u8x64};
+
+use super::block::{Env, Place};
+use super::config::TargetConfig;
+use super::target::ColorTile;
+use super::{COUNT, TileStageCounters};
+use crate::format::{self, Format};
+use crate::observer::BlockAccess;
+use crate::shader::{PACKETS, PacketOutput};
+use crate::simd::{F32, I32, LANES, Lanes, Mask, U32, outlined};
+use crate::state::{BlendComponent, BlendFactor, BlendOperation, BlendState, ColorWrites};
+
+/// Writes the outputs of the fragments of `live` to every colour target.
+#[inline(always)]
+pub(super) fn write<L: Lanes>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    place: Place,
+    live: u64,
+    access: &mut BlockAccess,
+) {
+    for (i, target) in env.config.targets.iter().enumerate() {
+        if target.mask.0 == 0 {
+            continue;
+        }
+        if COUNT {
+            let n = u64::from(live.count_ones());
+            let a = &mut env.counters.accesses;
+            a.color_write[i] += n;
+            a.color_read[i] += if target.reads { n } else { 0 };
+        }
+        access.color_write[i] = live;
+        access.color_read[i] = if target.reads { live } else { 0 };
+        let mut w = Writer { l, target, attachment: i, constant: env.config.blend_constant, c: &mut *env.counters };
+        w.block(&mut env.target.color[i], place.index, env.outputs, live);
+    }
+}
+
+struct Writer<'a, L> {
+    l: L,
+    target: &'a TargetConfig,
+    attachment: usize,
+    constant: [f32; 4],
+    c: &'a mut TileStageCounters,
+}
+
+type Channels<T> = [T; 4];
+
+impl<L: Lanes> Writer<'_, L> {
+    /// Writes all live packets of a block, in code of its own for each family of formats.
+    #[inline(always)]
+    fn block(&mut self, tile: &mut ColorTile<'_>, block: usize, out: &[PacketOutput; PACKETS], live: u64) {
+        let l = self.l;
+        match (self.target.format, tile) {
+            (Format::Rgba8Unorm, ColorTile::B32(b)) => outlined(
+                l,
+                #[inline(always)]
+                || self.packets(out, live, |w, k, src, live| w.rgba8(words(&mut b[block].0, k), src, live)),
+            ),
+            (Format::R8Unorm | Format::Rg8Unorm, tile) => outlined(
+                l,
+                #[inline(always)]
+                || self.packets(out, live, |w, k, src, live| w.unorm(tile, block, k, src, live)),
+            ),
+            (Format::R32Uint, ColorTile::B32(b)) => outlined(
+                l,
+                #[inline(always)]
+                || self.packets(out, live, |w, k, src, live| w.store32(words(&mut b[block].0, k), src[0].to_bits(), live)),
+            ),
+            (Format::R16Sint, ColorTile::B16(b)) => outlined(
+                l,
+                #[inline(always)]
+                || self.packets(out, live, |w, k, src, live| w.sint16(words(&mut b[block].0, k), src[0], live)),
+            ),
+            (_, tile) => outlined(
+                l,
+                #[inline(always)]
+                || self.packets(out, live, |w, k, src, live| w.float(tile, block, k, src, live)),
+            ),
+        }
+    }
+
+    #[inline(always)]
+    fn packets(
+        &mut self,
+        out: &[PacketOutput; PACKETS],
+        live: u64,
+        mut f: impl FnMut(&mut Self, usize, &Channels<F32<L>>, u16),
+    ) {
+        for (k, out) in out.iter().enumerate() {
+            let live = (live >> (16 * k)) as u16;
+            if live != 0 {
+                let src = core::array::from_fn(|c| F32::from_array(self.l, &out.color[self.attachment][c]));
+                f(self, k, &src, live);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn silent(&mut self, same: u16) {
+        if COUNT {
+            self.c.events.silent_color_writes[self.attachment] += u64::from(same.count_ones());
+        }
+    }
+
+    #[inline(always)]
+    fn saturated(&mut self, lanes: u32) {
+        if COUNT {
+            self.c.events.blend_saturated[self.attachment] += u64::from(lanes);
+        }
+    }
+
+    /// Masked store of whole words.
+    #[inline(always)]
+    fn store32(&mut self, words: &mut [u32; LANES], new: U32<L>, live: u16) {
+        let old = U32::from_array(self.l, words);
+        self.silent(new.eq(old).bits() & live);
+        Mask::from_bits(self.l, live).select_u32(new, old).store(words);
+    }
+
+    /// Source channels as bytes, limited and rounded half to even; counts what
+    /// had to be limited.
+    #[inline(always)]
+    fn bytes(&mut self, src: &Channels<F32<L>>, live: u16) -> Channels<I32<L>> {
+        let (zero, one) = (F32::splat(self.l, 0.0), F32::splat(self.l, 1.0));
+        core::array::from_fn(|c| {
+            let v = src[c];
+            if COUNT && self.target.mask.contains(c) {
+                let fits = v.ge(zero) & v.le(one);
+                let beyond = !fits.bits() & live;
+                if beyond != 0 {
+                    let e = &mut self.c.events;
+                    e.source_clamped[self.attachment] += u64::from(beyond.count_ones());
+                    e.nan_canonicalised += u64::from((v.ne(v).bits() & live).count_ones());
+                }
+            }
+            // Adding 2²³ rounds a float below 2²² to an integer, ties to even.
+            let scaled = v.clamp(0.0, 1.0) * 255.0 + 8_388_608.0;
+            scaled.to_bits().to_i32() & I32::splat(self.l, 0xff)
+        })
+    }
+
+    #[inline(always)]
+    fn rgba8(&mut self, words: &mut [u32; LANES], src: &Channels<F32<L>>, live: u16) {
+        let l = self.l;
+        let s = self.bytes(src, live);
+        let writes_all = self.target.mask == ColorWrites::ALL;
+        if writes_all && self.target.blend.is_none() {
+            return self.store32(words, pack(&s), live);
+        }
+        if writes_all && let Some(op) = self.target.blend.as_ref().and_then(plain_operation) {
+            return self.rgba8_plain(words, pack(&s), op, live);
+        }
+        let old = U32::from_array(l, words);
+        let d: Channels<I32<L>> =
+            core::array::from_fn(|c| (old >> (8 * c as u32)).to_i32() & I32::splat(l, 0xff));
+        let new = self.blend_bytes(&s, &d, true, live);
+        let kept = core::array::from_fn(|c| if self.target.mask.contains(c) { new[c] } else { d[c] });
+        self.store32(words, pack(&kept), live);
+    }
+
+    /// Blending whose factors are all One, or that has none: byte arithmetic.
+    #[inline(always)]
+    fn rgba8_plain(&mut self, words: &mut [u32; LANES], s: U32<L>, op: BlendOperation, live: u16) {
+        let old = U32::from_array(self.l, words);
+        let (sb, db): (u8x64<L::Isa>, u8x64<L::Isa>) = (s.v.bitcast(), old.v.bitcast());
+        let (new, wrapped) = match op {
+            BlendOperation::Add => (sb.saturating_add(db), sb + db),
+            BlendOperation::Subtract => (sb.saturating_sub(db), sb - db),
+            BlendOperation::ReverseSubtract => (db.saturating_sub(sb), db - sb),
+            BlendOperation::Min => (sb.min(db), sb.min(db)),
+            BlendOperation::Max => (sb.max(db), sb.max(db)),
+        };
+        if COUNT && !matches!(op, BlendOperation::Min | BlendOperation::Max) {
+            let limited = !new.simd_eq(wrapped).to_bitmask();
+            if limited != 0 {
+                self.saturated((limited & spread(live)).count_ones());
+            }
+        }
+        self.store32(words, U32::new(self.l, new.bitcast()), live);
+    }
+
+    #[inline(always)]
+    fn unorm(&mut self, tile: &mut ColorTile<'_>, block: usize, k: usize, src: &Channels<F32<L>>, live: u16) {
+        let s = self.bytes(src, live);
+        let at = 16 * k..16 * k + 16;
+        let raw: [u32; LANES] = match &*tile {
+            ColorTile::B8(b) => core::array::from_fn(|i| u32::from(b[block].0[16 * k + i])),
+            ColorTile::B16(b) => core::array::from_fn(|i| u32::from(b[block].0[16 * k + i])),
+            _ => unreachable!("R8 and RG8 only"),
+        };
+        let old = U32::from_array(self.l, &raw);
+        let byte = I32::splat(self.l, 0xff);
+        let zero = I32::splat(self.l, 0);
+        let d = [old.to_i32() & byte, (old >> 8).to_i32() & byte, zero, I32::splat(self.l, 255)];
+        let new = if self.target.blend.is_some() { self.blend_bytes(&s, &d, false, live) } else { s };
+        let kept: Channels<I32<L>> = core::array::from_fn(|c| {
+            if c > 1 {
+                zero
+            } else if self.target.mask.contains(c) {
+                new[c]
+            } else {
+                d[c]
+            }
+        });
+        let mut words = raw;
+        self.store32(&mut words, pack(&kept), live);
+        match tile {
+            ColorTile::B8(b) => b[block].0[at].iter_mut().zip(words).for_each(|(b, w)| *b = w as u8),
+            ColorTile::B16(b) => b[block].0[at].iter_mut().zip(words).for_each(|(b, w)| *b = w as u16),
+            _ => {}
+        }
+    }
+
+    /// The formulas of `state::blend`, channel by channel.
+    #[inline(always)]
+    fn blend_bytes(
+        &mut self,
+        s: &Channels<I32<L>>,
+        d: &Channels<I32<L>>,
+        has_alpha: bool,
+        live: u16,
+    ) -> Channels<I32<L>> {
+        let Some(blend) = self.target.blend else { return *s };
+        let l = self.l;
+        let constant = self.constant.map(|c| i32::from(format::unorm8_from_f32(c)));
+        let d_alpha = if has_alpha { d[3] } else { I32::splat(l, 255) };
+        core::array::from_fn(|c| {
+            if !self.target.mask.contains(c) {
+                return d[c];
+            }
+            let b = if c < 3 { &blend.color } else { &blend.alpha };
+            match b.operation {
+                BlendOperation::Min => return s[c].min(d[c]),
+                BlendOperation::Max => return s[c].max(d[c]),
+                _ => {}
+            }
+            let factor = |f| byte_factor(l, f, c, s, d, d_alpha, constant);
+            let (sf, df) = (s[c] * factor(b.src_factor), d[c] * factor(b.dst_factor));
+            let t = match b.operation {
+                BlendOperation::Subtract => sf - df,
+                BlendOperation::ReverseSubtract => df - sf,
+                _ => sf + df,
+            };
+            let (zero, top) = (I32::splat(l, 0), I32::splat(l, 255 * 255));
+            let limited = (t.lt(zero) | t.gt(top)).bits() & live;
+            self.saturated(limited.count_ones());
+            let t = t.max(zero).min(top) + I32::splat(l, 128);
+            (t + (t >> 8)) >> 8
+        })
+    }
+
+    /// R16Sint: exact, saturating; factors are One or Zero.
+    #[inline(always)]
+    fn sint16(&mut self, words: &mut [u16; LANES], src: F32<L>, live: u16) {
+        let l = self.l;
+        let rounded = src.round_ties_even();
+        let (lo, hi) = (F32::splat(l, -32768.0), F32::splat(l, 32767.0));
+        let beyond = !(rounded.ge(lo) & rounded.le(hi)).bits() & live;
+        let e = &mut self.c.events;
+        e.source_clamped[self.attachment] += u64::from(beyond.count_ones());
+        e.nan_canonicalised += u64::from((src.ne(src).bits() & live).count_ones());
+        // NaN goes to 0, as `as` does.
+        let s = rounded.to_i32().max(I32::splat(l, -32768)).min(I32::splat(l, 32767));
+        let d = I32::from_array(l, &words.map(|w| i32::from(w as i16)));
+        let new = match self.target.blend {
+            None => s,
+            Some(b) => self.blend_sint16(&b.color, s, d, live),
+        };
+        let same = new.eq(d).bits() & live;
+        self.silent(same);
+        for (i, (w, n)) in words.iter_mut().zip(new.to_array()).enumerate() {
+            if live >> i & 1 != 0 {
+                *w = n as u16;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn blend_sint16(&mut self, b: &BlendComponent, s: I32<L>, d: I32<L>, live: u16) -> I32<L> {
+        let l = self.l;
+        let weigh = |v: I32<L>, f: BlendFactor| if f == BlendFactor::One { v } else { I32::splat(l, 0) };
+        let (sf, df) = (weigh(s, b.src_factor), weigh(d, b.dst_factor));
+        let t = match b.operation {
+            BlendOperation::Add => sf + df,
+            BlendOperation::Subtract => sf - df,
+            BlendOperation::ReverseSubtract => df - sf,
+            BlendOperation::Min => return s.min(d),
+            BlendOperation::Max => return s.max(d),
+        };
+        let (lo, hi) = (I32::splat(l, -32768), I32::splat(l, 32767));
+        self.saturated(((t.lt(lo) | t.gt(hi)).bits() & live).count_ones());
+        t.max(lo).min(hi)
+    }
+
+    /// Half and single floats.
+    #[inline(always)]
+    fn float(&mut self, tile: &mut ColorTile<'_>, block: usize, k: usize, src: &Channels<F32<L>>, live: u16) {
+        let l = self.l;
+        let format = self.target.format;
+        let half = matches!(format, Format::R16Float | Format::Rgba16Float);
+        let n = format.channels();
+        let mut old = [[0u32; LANES]; 4];
+        for (c, o) in old.iter_mut().enumerate().take(n) {
+            load_channel(tile, block, k, c, o);
+        }
+        let decode = |raw: &[u32; LANES]| {
+            if half {
+                F32::from_array(l, &raw.map(|r| format::f32_from_f16(r as u16)))
+            } else {
+                U32::from_array(l, raw).to_f32_bits()
+            }
+        };
+        let d: Channels<F32<L>> = core::array::from_fn(|c| decode(&old[c]));
+        let d_alpha = if n == 4 { d[3] } else { F32::splat(l, 1.0) };
+        let mut same = live;
+        for c in (0..n).filter(|&c| self.target.mask.contains(c)) {
+            let v = match self.target.blend {
+                None => src[c],
+                Some(b) => blend_float(l, if c < 3 { &b.color } else { &b.alpha }, c, src, &d, d_alpha, self.constant),
+            };
+            let nan = v.ne(v).bits() & live;
+            self.c.events.nan_canonicalised += u64::from(nan.count_ones());
+            let v = v.canonical_nan();
+            let raw = if half { v.to_array().map(|x| u32::from(format::f16_from_f32(x))) } else { v.to_bits().to_array() };
+            let new = U32::from_array(l, &raw);
+            let was = U32::from_array(l, &old[c]);
+            same &= new.eq(was).bits();
+            store_channel(tile, block, k, c, &Mask::from_bits(l, live).select_u32(new, was).to_array());
+        }
+        self.silent(same);
+    }
+}
+
+/// Packet `k` of a block's values.
+#[inline(always)]
+fn words<T>(block: &mut [T; 64], k: usize) -> &mut [T; LANES] {
+    (&mut block[16 * k..16 * k + 16]).try_into().expect("16 of 64")
+}
+
+/// Red in the low byte.
+#[inline(always)]
+fn pack<L: Lanes>(c: &Channels<I32<L>>) -> U32<L> {
+    ((c[0] | c[1] << 8) | (c[2] << 16 | c[3] << 24)).to_u32()
+}
+
+/// Every bit four times.
+#[inline(always)]
+fn spread(lanes: u16) -> u64 {
+    let mut v = u64::from(lanes);
+    v = (v | v << 24) & 0x0000_00ff_0000_00ff;
+    v = (v | v << 12) & 0x000f_000f_000f_000f;
+    v = (v | v << 6) & 0x0303_0303_0303_0303;
+    v = (v | v << 3) & 0x1111_1111_1111_1111;
+    v * 15
+}
+
+/// The operation, where it is the same for all channels and needs no factors.
+#[inline(always)]
+fn plain_operation(b: &BlendState) -> Option<BlendOperation> {
+    let one = |c: &BlendComponent| c.src_factor == BlendFactor::One && c.dst_factor == BlendFactor::One;
+    let free = matches!(b.color.operation, BlendOperation::Min | BlendOperation::Max);
+    (b.color.operation == b.alpha.operation && (free || (one(&b.color) && one(&b.alpha)))).then_some(b.color.operation)
+}
+
+#[inline(always)]
+fn byte_factor<L: Lanes>(
+    l: L,
+    f: BlendFactor,
+    c: usize,
+    s: &Channels<I32<L>>,
+    d: &Channels<I32<L>>,
+    d_alpha: I32<L>,
+    constant: [i32; 4],
+) -> I32<L> {
+    let full = I32::splat(l, 255);
+    match f {
+        BlendFactor::Zero => I32::splat(l, 0),
+        BlendFactor::One => full,
+        BlendFactor::Src => s[c],
+        BlendFactor::OneMinusSrc => full - s[c],
+        BlendFactor::SrcAlpha => s[3],
+        BlendFactor::OneMinusSrcAlpha => full - s[3],
+        BlendFactor::Dst => d[c],
+        BlendFactor::OneMinusDst => full - d[c],
+        BlendFactor::DstAlpha => d_alpha,
+        BlendFactor::OneMinusDstAlpha => full - d_alpha,
+        BlendFactor::SrcAlphaSaturated if c == 3 => full,
+        BlendFactor::SrcAlphaSaturated => s[3].min(full - d_alpha),
+        BlendFactor::Constant => I32::splat(l, constant[c]),
+        BlendFactor::OneMinusConstant => I32::splat(l, 255 - constant[c]),
+    }
+}
+
+#[inline(always)]
+fn blend_float<L: Lanes>(
+    l: L,
+    b: &BlendComponent,
+    c: usize,
+    s: &Channels<F32<L>>,
+    d: &Channels<F32<L>>,
+    d_alpha: F32<L>,
+    constant: [f32; 4],
+) -> F32<L> {
+    let one = F32::splat(l, 1.0);
+    let factor = |f: BlendFactor| match f {
+        BlendFactor::Zero => F32::splat(l, 0.0),
+        BlendFactor::One => one,
+        BlendFactor::Src => s[c],
+        BlendFactor::OneMinusSrc => one - s[c],
+        BlendFactor::SrcAlpha => s[3],
+        BlendFactor::OneMinusSrcAlpha => one - s[3],
+        BlendFactor::Dst => d[c],
+        BlendFactor::OneMinusDst => one - d[c],
+        BlendFactor::DstAlpha => d_alpha,
+        BlendFactor::OneMinusDstAlpha => one - d_alpha,
+        BlendFactor::SrcAlphaSaturated if c == 3 => one,
+        BlendFactor::SrcAlphaSaturated => s[3].min(one - d_alpha),
+        BlendFactor::Constant => F32::splat(l, constant[c]),
+        BlendFactor::OneMinusConstant => one - F32::splat(l, constant[c]),
+    };
+    match b.operation {
+        BlendOperation::Add => s[c] * factor(b.src_factor) + d[c] * factor(b.dst_factor),
+        BlendOperation::Subtract => s[c] * factor(b.src_factor) - d[c] * factor(b.dst_factor),
+        BlendOperation::ReverseSubtract => d[c] * factor(b.dst_factor) - s[c] * factor(b.src_factor),
+        BlendOperation::Min => s[c].min(d[c]),
+        BlendOperation::Max => s[c].max(d[c]),
+    }
+}
+
+#[inline(always)]
+fn load_channel(tile: &ColorTile<'_>, block: usize, k: usize, c: usize, out: &mut [u32; LANES]) {
+    let at = 16 * k..16 * k + 16;
+    match tile {
+        ColorTile::B16(b) => out.iter_mut().zip(&b[block].0[at]).for_each(|(o, v)| *o = u32::from(*v)),
+        ColorTile::B32(b) => out.copy_from_slice(&b[block].0[at]),
+        ColorTile::B16x4(b) => out.iter_mut().zip(&b[block].0[c][at]).for_each(|(o, v)| *o = u32::from(*v)),
+        ColorTile::B32x4(b) => out.copy_from_slice(&b[block].0[c][at]),
+        ColorTile::B8(_) => unreachable!("no float format has one byte"),
+    }
+}
+
+#[inline(always)]
+fn store_channel(tile: &mut ColorTile<'_>, block: usize, k: usize, c: usize, v: &[u32; LANES]) {
+    let at = 16 * k..16 * k + 16;
+    match tile {
+        ColorTile::B16(b) => b[block].0[at].iter_mut().zip(v).for_each(|(o, v)| *o = *v as u16),
+        ColorTile::B32(b) => b[block].0[at].copy_from_slice(v),
+        ColorTile::B16x4(b) => b[block].0[c][at].iter_mut().zip(v).for_each(|(o, v)| *o = *v as u16),
+        ColorTile::B32x4(b) => b[block].0[c][at].copy_from_slice(v),
+        ColorTile::B8(_) => unreachable!("no float format has one byte"),
+    }
+}

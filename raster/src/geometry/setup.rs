@@ -2,7 +2,7 @@
 
 use super::assemble::{Chunk, ChunkInput};
 use super::{DepthEncoding, GeometryState};
-use crate::simd::{F32, F64, LANES, Lanes, Mask, SimdLevel, with_lanes};
+use crate::simd::{F32, F64, I32, LANES, Lanes, Mask, SimdLevel, each3, with_lanes};
 use crate::state::{CullMode, FrontFace};
 
 /// A triangle on its way into set-up.
@@ -87,8 +87,16 @@ fn gather<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &Chunk, pieces: &[Piece
             a[2][k][lane] = s.z;
         }
     }
-    let lanes = |a: &[[f32; LANES]; 3]| core::array::from_fn(|k| F32::from_array(l, &a[k]));
-    Corners { x: lanes(&a[0]), y: lanes(&a[1]), z: lanes(&a[2]) }
+    let [x, y, z] = each3(
+        #[inline(always)]
+        |c| {
+            each3(
+                #[inline(always)]
+                |k| F32::from_array(l, &a[c][k]),
+            )
+        },
+    );
+    Corners { x, y, z }
 }
 
 #[inline(always)]
@@ -131,8 +139,9 @@ fn facing_to_cull(state: &GeometryState, front: u16) -> u16 {
 /// `(X1−X0)(Y2−Y0) − (X2−X0)(Y1−Y0)`, exact.
 #[inline(always)]
 fn doubled_area<L: Lanes>(q: &Corners<L>) -> F64<L> {
-    let d = |a: F32<L>, b: F32<L>| F64::from_f32(a - b);
-    d(q.x[1], q.x[0]) * d(q.y[2], q.y[0]) - d(q.x[2], q.x[0]) * d(q.y[1], q.y[0])
+    let (ax, ay) = (F64::from_f32(q.x[1] - q.x[0]), F64::from_f32(q.y[1] - q.y[0]));
+    let (bx, by) = (F64::from_f32(q.x[2] - q.x[0]), F64::from_f32(q.y[2] - q.y[0]));
+    ax * by - bx * ay
 }
 
 struct Edges {
@@ -148,9 +157,8 @@ impl Edges {
         let zero = F32::splat(l, 0.0);
         for k in 0..3 {
             let (a, b) = (k, (k + 1) % 3);
-            let flip = |v: F32<L>| negative.select_f32(-v, v);
-            let dx = flip(q.x[b] - q.x[a]);
-            let dy = flip(q.y[b] - q.y[a]);
+            let (dx, dy) = (q.x[b] - q.x[a], q.y[b] - q.y[a]);
+            let (dx, dy) = (negative.select_f32(-dx, dx), negative.select_f32(-dy, dy));
             let owns = dy.lt(zero) | (dy.eq(zero) & dx.gt(zero));
             let bias = F64::from_f32(owns.select_f32(zero, F32::splat(l, 1.0)));
             let half = F32::splat(l, 128.0);
@@ -204,15 +212,20 @@ fn beyond<L: Lanes>(s: F64<L>) -> u16 {
     m
 }
 
+/// `a − b` of snapped coordinates, in pixels.
+#[inline(always)]
+fn pixels<L: Lanes>(a: F32<L>, b: F32<L>) -> F64<L> {
+    F64::from_f32(a - b) * (1.0 / 256.0)
+}
+
 /// Screen gradients of a quantity (rules §3.6).
 #[inline(always)]
 fn gradients<L: Lanes>(q: &Corners<L>, v: &[F32<L>; 3]) -> (F64<L>, F64<L>) {
-    let p = |a: F32<L>, b: F32<L>| F64::from_f32(a - b) * (1.0 / 256.0);
-    let (ax, ay) = (p(q.x[1], q.x[0]), p(q.y[1], q.y[0]));
-    let (bx, by) = (p(q.x[2], q.x[0]), p(q.y[2], q.y[0]));
+    let (ax, ay) = (pixels(q.x[1], q.x[0]), pixels(q.y[1], q.y[0]));
+    let (bx, by) = (pixels(q.x[2], q.x[0]), pixels(q.y[2], q.y[0]));
     let det = ax * by - bx * ay;
-    let z = v.map(F64::from_f32);
-    let (e1, e2) = (z[1] - z[0], z[2] - z[0]);
+    let first = F64::from_f32(v[0]);
+    let (e1, e2) = (F64::from_f32(v[1]) - first, F64::from_f32(v[2]) - first);
     ((e1 * by - e2 * ay) / det, (e2 * ax - e1 * bx) / det)
 }
 
@@ -223,7 +236,7 @@ fn biases<L: Lanes>(state: &GeometryState, zx: &[f64; LANES], zy: &[f64; LANES],
     if b.constant == 0.0 && b.slope == 0.0 {
         return [0.0; LANES];
     }
-    let z = q.z.map(F32::to_array);
+    let z = [q.z[0].to_array(), q.z[1].to_array(), q.z[2].to_array()];
     core::array::from_fn(|i| {
         let largest = z.iter().map(|z| z[i].abs()).fold(0.0f32, |m, v| if v > m { v } else { m });
         let step = match state.encoding {
@@ -250,12 +263,19 @@ fn float_step(v: f32) -> f64 {
 /// First and last column and row whose centres can be covered.
 #[inline(always)]
 fn pixel_bounds<L: Lanes>(q: &Corners<L>) -> [[i32; LANES]; 4] {
-    let low = |v: &[F32<L>; 3]| v[0].min(v[1]).min(v[2]).to_i32();
-    let high = |v: &[F32<L>; 3]| v[0].max(v[1]).max(v[2]).to_i32();
-    let l = q.x[0].l;
-    let first = |v: crate::simd::I32<L>| (v + crate::simd::I32::splat(l, 127)) >> 8;
-    let last = |v: crate::simd::I32<L>| (v - crate::simd::I32::splat(l, 128)) >> 8;
-    [first(low(&q.x)).to_array(), first(low(&q.y)).to_array(), last(high(&q.x)).to_array(), last(high(&q.y)).to_array()]
+    [first_pixel(&q.x), first_pixel(&q.y), last_pixel(&q.x), last_pixel(&q.y)]
+}
+
+#[inline(always)]
+fn first_pixel<L: Lanes>(v: &[F32<L>; 3]) -> [i32; LANES] {
+    let low = v[0].min(v[1]).min(v[2]).to_i32();
+    ((low + I32::splat(v[0].l, 127)) >> 8).to_array()
+}
+
+#[inline(always)]
+fn last_pixel<L: Lanes>(v: &[F32<L>; 3]) -> [i32; LANES] {
+    let high = v[0].max(v[1]).max(v[2]).to_i32();
+    ((high - I32::splat(v[0].l, 128)) >> 8).to_array()
 }
 
 #[inline(always)]

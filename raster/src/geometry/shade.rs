@@ -2,7 +2,7 @@
 
 use super::{GeometryState, clip};
 use crate::shader::{ErasedVertexShader, VertexBatch, VertexOutput};
-use crate::simd::{F32, F64, LANES, Lanes, SimdLevel, with_lanes};
+use crate::simd::{F32, F64, LANES, Lanes, SimdLevel, each4, with_lanes};
 
 /// A projected vertex: snapped 24.8 coordinates as exact integers in floats.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -109,9 +109,10 @@ pub(crate) fn shade_part(
 #[inline(always)]
 fn project<L: Lanes>(l: L, state: &GeometryState, out: &mut ShadedPart<'_>) {
     for at in (0..out.codes.len()).step_by(LANES) {
-        let p: [F32<L>; 4] = core::array::from_fn(|c| {
-            F32::from_array(l, out.clip[c][at..at + LANES].try_into().expect("whole packet"))
-        });
+        let p: [F32<L>; 4] = each4(
+            #[inline(always)]
+            |c| F32::from_array(l, out.clip[c][at..at + LANES].try_into().expect("whole packet")),
+        );
         let codes = clip_codes(l, state, &p);
         out.codes[at..at + LANES].copy_from_slice(&codes);
         let screen = &mut out.screen[at..at + LANES];
@@ -125,13 +126,15 @@ fn project<L: Lanes>(l: L, state: &GeometryState, out: &mut ShadedPart<'_>) {
 fn clip_codes<L: Lanes>(l: L, state: &GeometryState, p: &[F32<L>; 4]) -> [u16; LANES] {
     let [x, y, z, w] = *p;
     let zero = F32::splat(l, 0.0);
-    let finite = |v: F32<L>| (v - v).eq(zero);
-    let all_finite = finite(x) & finite(y) & finite(z) & finite(w);
+    let all_finite = (x - x).eq(zero) & (y - y).eq(zero) & (z - z).eq(zero) & (w - w).eq(zero);
     let outside = [x.gt(w), x.lt(-w), y.gt(w), y.lt(-w)];
     let w_bad = w.le(zero);
 
     let guard = state.viewport.guard.map(f64::from);
-    let [xd, yd, zd, wd] = p.map(F64::from_f32);
+    let [xd, yd, zd, wd] = each4(
+        #[inline(always)]
+        |c| F64::from_f32(p[c]),
+    );
     let near = if state.depth_clamp { zd + wd * clip::DEPTH_GUARD } else { zd };
     let distances = [
         wd - f64::from(clip::W_MIN),

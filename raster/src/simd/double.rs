@@ -69,12 +69,12 @@ impl<L: Lanes> F64<L> {
         let isa = self.l.isa();
         let (max, min) = (f64x8::splat(isa, limit), f64x8::splat(isa, -limit));
         let magic = f64x8::splat(isa, ROUND_MAGIC);
-        let half = |v: f64x8<L::Isa>| -> i64x8<L::Isa> {
-            let v = isa.select_f64x8(v.simd_lt(max), v, max);
-            let v = isa.select_f64x8(v.simd_gt(min), v, min);
-            (v + magic).bitcast()
-        };
-        let v: i32x16<L::Isa> = isa.narrow_i64x8(half(self.lo), half(self.hi));
+        let lo = isa.select_f64x8(self.lo.simd_lt(max), self.lo, max);
+        let lo = isa.select_f64x8(lo.simd_gt(min), lo, min);
+        let hi = isa.select_f64x8(self.hi.simd_lt(max), self.hi, max);
+        let hi = isa.select_f64x8(hi.simd_gt(min), hi, min);
+        let (lo, hi): (i64x8<L::Isa>, i64x8<L::Isa>) = ((lo + magic).bitcast(), (hi + magic).bitcast());
+        let v: i32x16<L::Isa> = isa.narrow_i64x8(lo, hi);
         I32::new(self.l, v)
     }
 }

@@ -50,6 +50,20 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     }
 }
 
+/// `[f(0), f(1), f(2)]`, inlined without fail: `array::from_fn` may stay a call
+/// of its own and would lose the level's instructions. Annotate the closure with
+/// `#[inline(always)]`.
+#[inline(always)]
+pub fn each3<T>(mut f: impl FnMut(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
+}
+
+/// `[f(0), f(1), f(2), f(3)]`, as [`each3`].
+#[inline(always)]
+pub fn each4<T>(mut f: impl FnMut(usize) -> T) -> [T; 4] {
+    [f(0), f(1), f(2), f(3)]
+}
+
 /// Runs `f` in a function of its own, compiled for the level: a seam that keeps
 /// inlining from multiplying the code.
 #[inline(always)]

@@ -289,20 +289,19 @@ fn tests<L: Lanes, const D24: bool>(
 
 #[inline(always)]
 fn packets(mut f: impl FnMut(usize) -> u16) -> u64 {
-    let mut m = 0;
-    for k in 0..PACKETS {
-        m |= u64::from(f(k)) << (16 * k);
-    }
-    m
+    u64::from(f(0)) | u64::from(f(1)) << 16 | u64::from(f(2)) << 32 | u64::from(f(3)) << 48
 }
 
 #[inline(always)]
 fn within_bounds<L: Lanes>(l: L, stored: &Block<u32>, lo: i32, hi: i32) -> u64 {
     use crate::simd::I32;
-    packets(|k| {
-        let z = depth::load(l, stored, k);
-        (z.ge(I32::splat(l, lo)) & z.le(I32::splat(l, hi))).bits()
-    })
+    packets(
+        #[inline(always)]
+        |k| {
+            let z = depth::load(l, stored, k);
+            (z.ge(I32::splat(l, lo)) & z.le(I32::splat(l, hi))).bits()
+        },
+    )
 }
 
 #[inline(always)]
@@ -339,13 +338,16 @@ fn write_block<L: Lanes, const D24: bool>(
     mask: u64,
 ) -> u64 {
     let differs = matches!(f, CompareFunction::Less | CompareFunction::Greater | CompareFunction::NotEqual);
-    packets(|k| {
-        let m = (mask >> (16 * k)) as u16;
-        let z = fragment_depth(l, depths, k);
-        let same = if differs || !COUNT { 0 } else { z.eq(depth::load(l, stored, k)).bits() & m };
-        depth::store(l, stored, k, z, m);
-        same
-    })
+    packets(
+        #[inline(always)]
+        |k| {
+            let m = (mask >> (16 * k)) as u16;
+            let z = fragment_depth(l, depths, k);
+            let same = if differs || !COUNT { 0 } else { z.eq(depth::load(l, stored, k)).bits() & m };
+            depth::store(l, stored, k, z, m);
+            same
+        },
+    )
 }
 
 /// Applies the three operations; `outcomes` are the pixels that failed the

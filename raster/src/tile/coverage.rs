@@ -4,7 +4,7 @@ use super::Recorder;
 use super::block::{self, Env};
 use super::target::rect_mask;
 use crate::geometry::Triangle;
-use crate::simd::{I32, LANES, Lanes, outlined};
+use crate::simd::{I32, LANES, Lanes, each3, outlined, round_to_i32};
 
 const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const IY: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
@@ -44,11 +44,15 @@ struct TileEdges {
 impl TileEdges {
     #[inline(always)]
     fn new(t: &Triangle, x: u32, y: u32) -> Self {
-        let e = core::array::from_fn(|k| {
-            let v = t.c[k] + (f64::from(t.dx[k]) * f64::from(y) - f64::from(t.dy[k]) * f64::from(x));
-            let v = if v < EDGE_LIMIT { v } else { EDGE_LIMIT };
-            (if v > -EDGE_LIMIT { v } else { -EDGE_LIMIT }) as i32
-        });
+        let (x, y) = (f64::from(x), f64::from(y));
+        let e = each3(
+            #[inline(always)]
+            |k| {
+                let v = t.c[k] + (f64::from(t.dx[k]) * y - f64::from(t.dy[k]) * x);
+                let v = if v < EDGE_LIMIT { v } else { EDGE_LIMIT };
+                round_to_i32(if v > -EDGE_LIMIT { v } else { -EDGE_LIMIT })
+            },
+        );
         Self { e, dx: t.dx, dy: t.dy }
     }
 
@@ -70,10 +74,17 @@ impl TileEdges {
     #[inline(always)]
     fn mask<L: Lanes>(&self, l: L, bx: i32, by: i32) -> u64 {
         let (ix, iy) = (I32::from_array(l, &IX), I32::from_array(l, &IY));
-        let mut e: [I32<L>; 3] = core::array::from_fn(|k| {
-            (iy * I32::splat(l, self.dx[k]) - ix * I32::splat(l, self.dy[k])) + I32::splat(l, self.at_block(k, bx, by))
-        });
-        let step: [I32<L>; 3] = core::array::from_fn(|k| I32::splat(l, 2 * self.dx[k]));
+        let mut e: [I32<L>; 3] = each3(
+            #[inline(always)]
+            |k| {
+                (iy * I32::splat(l, self.dx[k]) - ix * I32::splat(l, self.dy[k]))
+                    + I32::splat(l, self.at_block(k, bx, by))
+            },
+        );
+        let step: [I32<L>; 3] = each3(
+            #[inline(always)]
+            |k| I32::splat(l, 2 * self.dx[k]),
+        );
         let zero = I32::splat(l, 0);
         let mut m = 0;
         for p in 0..4 {
@@ -147,7 +158,7 @@ fn triangle<L: Lanes, R: Recorder, const D24: bool>(
         }
         return;
     }
-    let whole = (0..3).all(|k| e.e[k] + e.span(k, side).0 >= 0);
+    let whole = (e.e[0] + e.span(0, side).0) | (e.e[1] + e.span(1, side).0) | (e.e[2] + e.span(2, side).0) >= 0;
     if whole {
         for by in by0..=by1 {
             for bx in bx0..=bx1 {

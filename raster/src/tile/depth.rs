@@ -115,8 +115,8 @@ impl<const D24: bool> DepthBlock<D24> {
             let z = ix * I32::splat(l, self.slope[0]) + iy * I32::splat(l, self.slope[1]);
             (z + I32::splat(l, self.base + D24_HALF)) >> D24_FRACTION
         } else {
-            let f = |b: i32| F32::splat(l, f32::from_bits(b as u32));
-            let z = (f(self.base) + ix.to_f32() * f(self.slope[0])) + iy.to_f32() * f(self.slope[1]);
+            let [base, sx, sy] = [self.base, self.slope[0], self.slope[1]].map(|b| f32::from_bits(b as u32));
+            let z = (F32::splat(l, base) + ix.to_f32() * sx) + iy.to_f32() * sy;
             z.to_bits().to_i32()
         }
     }

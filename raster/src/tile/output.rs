@@ -9,7 +9,7 @@ use super::{COUNT, TileStageCounters};
 use crate::format::{self, Format};
 use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput};
-use crate::simd::{F32, I32, LANES, Lanes, Mask, U32, outlined};
+use crate::simd::{F32, I32, LANES, Lanes, Mask, U32, each4, outlined};
 use crate::state::{BlendComponent, BlendFactor, BlendOperation, BlendState, ColorWrites};
 
 /// Writes the outputs of the fragments of `live` to every colour target.
@@ -57,27 +57,62 @@ impl<L: Lanes> Writer<'_, L> {
             (Format::Rgba8Unorm, ColorTile::B32(b)) => outlined(
                 l,
                 #[inline(always)]
-                || self.packets(out, live, |w, k, src, live| w.rgba8(words(&mut b[block].0, k), src, live)),
+                || {
+                    self.packets(
+                        out,
+                        live,
+                        #[inline(always)]
+                        |w, k, src, live| w.rgba8(words(&mut b[block].0, k), src, live),
+                    );
+                },
             ),
             (Format::R8Unorm | Format::Rg8Unorm, tile) => outlined(
                 l,
                 #[inline(always)]
-                || self.packets(out, live, |w, k, src, live| w.unorm(tile, block, k, src, live)),
+                || {
+                    self.packets(
+                        out,
+                        live,
+                        #[inline(always)]
+                        |w, k, src, live| w.unorm(tile, block, k, src, live),
+                    );
+                },
             ),
             (Format::R32Uint, ColorTile::B32(b)) => outlined(
                 l,
                 #[inline(always)]
-                || self.packets(out, live, |w, k, src, live| w.store32(words(&mut b[block].0, k), src[0].to_bits(), live)),
+                || {
+                    self.packets(
+                        out,
+                        live,
+                        #[inline(always)]
+                        |w, k, src, live| w.store32(words(&mut b[block].0, k), src[0].to_bits(), live),
+                    );
+                },
             ),
             (Format::R16Sint, ColorTile::B16(b)) => outlined(
                 l,
                 #[inline(always)]
-                || self.packets(out, live, |w, k, src, live| w.sint16(words(&mut b[block].0, k), src[0], live)),
+                || {
+                    self.packets(
+                        out,
+                        live,
+                        #[inline(always)]
+                        |w, k, src, live| w.sint16(words(&mut b[block].0, k), src[0], live),
+                    );
+                },
             ),
             (_, tile) => outlined(
                 l,
                 #[inline(always)]
-                || self.packets(out, live, |w, k, src, live| w.float(tile, block, k, src, live)),
+                || {
+                    self.packets(
+                        out,
+                        live,
+                        #[inline(always)]
+                        |w, k, src, live| w.float(tile, block, k, src, live),
+                    );
+                },
             ),
         }
     }
@@ -92,7 +127,12 @@ impl<L: Lanes> Writer<'_, L> {
         for (k, out) in out.iter().enumerate() {
             let live = (live >> (16 * k)) as u16;
             if live != 0 {
-                let src = core::array::from_fn(|c| F32::from_array(self.l, &out.color[self.attachment][c]));
+                let l = self.l;
+                let color = &out.color[self.attachment];
+                let src = each4(
+                    #[inline(always)]
+                    |c| F32::from_array(l, &color[c]),
+                );
                 f(self, k, &src, live);
             }
         }
@@ -125,7 +165,9 @@ impl<L: Lanes> Writer<'_, L> {
     #[inline(always)]
     fn bytes(&mut self, src: &Channels<F32<L>>, live: u16) -> Channels<I32<L>> {
         let (zero, one) = (F32::splat(self.l, 0.0), F32::splat(self.l, 1.0));
-        core::array::from_fn(|c| {
+        each4(
+            #[inline(always)]
+            |c| {
             let v = src[c];
             if COUNT && self.target.mask.contains(c) {
                 let fits = v.ge(zero) & v.le(one);
@@ -139,7 +181,8 @@ impl<L: Lanes> Writer<'_, L> {
             // Adding 2²³ rounds a float below 2²² to an integer, ties to even.
             let scaled = v.clamp(0.0, 1.0) * 255.0 + 8_388_608.0;
             scaled.to_bits().to_i32() & I32::splat(self.l, 0xff)
-        })
+        },
+        )
     }
 
     #[inline(always)]
@@ -155,9 +198,15 @@ impl<L: Lanes> Writer<'_, L> {
         }
         let old = U32::from_array(l, words);
         let d: Channels<I32<L>> =
-            core::array::from_fn(|c| (old >> (8 * c as u32)).to_i32() & I32::splat(l, 0xff));
+            each4(
+                #[inline(always)]
+                |c| (old >> (8 * c as u32)).to_i32() & I32::splat(l, 0xff),
+            );
         let new = self.blend_bytes(&s, &d, true, live);
-        let kept = core::array::from_fn(|c| if self.target.mask.contains(c) { new[c] } else { d[c] });
+        let kept = each4(
+            #[inline(always)]
+            |c| if self.target.mask.contains(c) { new[c] } else { d[c] },
+        );
         self.store32(words, pack(&kept), live);
     }
 
@@ -196,15 +245,14 @@ impl<L: Lanes> Writer<'_, L> {
         let zero = I32::splat(self.l, 0);
         let d = [old.to_i32() & byte, (old >> 8).to_i32() & byte, zero, I32::splat(self.l, 255)];
         let new = if self.target.blend.is_some() { self.blend_bytes(&s, &d, false, live) } else { s };
-        let kept: Channels<I32<L>> = core::array::from_fn(|c| {
-            if c > 1 {
-                zero
-            } else if self.target.mask.contains(c) {
-                new[c]
-            } else {
-                d[c]
-            }
-        });
+        let kept: Channels<I32<L>> = each4(
+            #[inline(always)]
+            |c| match c {
+                0 | 1 if self.target.mask.contains(c) => new[c],
+                0 | 1 => d[c],
+                _ => zero,
+            },
+        );
         let mut words = raw;
         self.store32(&mut words, pack(&kept), live);
         match tile {
@@ -227,7 +275,9 @@ impl<L: Lanes> Writer<'_, L> {
         let l = self.l;
         let constant = self.constant.map(|c| i32::from(format::unorm8_from_f32(c)));
         let d_alpha = if has_alpha { d[3] } else { I32::splat(l, 255) };
-        core::array::from_fn(|c| {
+        each4(
+            #[inline(always)]
+            |c| {
             if !self.target.mask.contains(c) {
                 return d[c];
             }
@@ -237,8 +287,8 @@ impl<L: Lanes> Writer<'_, L> {
                 BlendOperation::Max => return s[c].max(d[c]),
                 _ => {}
             }
-            let factor = |f| byte_factor(l, f, c, s, d, d_alpha, constant);
-            let (sf, df) = (s[c] * factor(b.src_factor), d[c] * factor(b.dst_factor));
+            let sf = s[c] * byte_factor(l, b.src_factor, c, s, d, d_alpha, constant);
+            let df = d[c] * byte_factor(l, b.dst_factor, c, s, d, d_alpha, constant);
             let t = match b.operation {
                 BlendOperation::Subtract => sf - df,
                 BlendOperation::ReverseSubtract => df - sf,
@@ -249,7 +299,8 @@ impl<L: Lanes> Writer<'_, L> {
             self.saturated(limited.count_ones());
             let t = t.max(zero).min(top) + I32::splat(l, 128);
             (t + (t >> 8)) >> 8
-        })
+        },
+        )
     }
 
     /// R16Sint: exact, saturating; factors are One or Zero.
@@ -281,8 +332,9 @@ impl<L: Lanes> Writer<'_, L> {
     #[inline(always)]
     fn blend_sint16(&mut self, b: &BlendComponent, s: I32<L>, d: I32<L>, live: u16) -> I32<L> {
         let l = self.l;
-        let weigh = |v: I32<L>, f: BlendFactor| if f == BlendFactor::One { v } else { I32::splat(l, 0) };
-        let (sf, df) = (weigh(s, b.src_factor), weigh(d, b.dst_factor));
+        let zero = I32::splat(l, 0);
+        let sf = if b.src_factor == BlendFactor::One { s } else { zero };
+        let df = if b.dst_factor == BlendFactor::One { d } else { zero };
         let t = match b.operation {
             BlendOperation::Add => sf + df,
             BlendOperation::Subtract => sf - df,
@@ -306,14 +358,13 @@ impl<L: Lanes> Writer<'_, L> {
         for (c, o) in old.iter_mut().enumerate().take(n) {
             load_channel(tile, block, k, c, o);
         }
-        let decode = |raw: &[u32; LANES]| {
-            if half {
-                F32::from_array(l, &raw.map(|r| format::f32_from_f16(r as u16)))
-            } else {
-                U32::from_array(l, raw).to_f32_bits()
-            }
-        };
-        let d: Channels<F32<L>> = core::array::from_fn(|c| decode(&old[c]));
+        let d: Channels<F32<L>> = each4(
+            #[inline(always)]
+            |c| match half {
+                true => F32::from_array(l, &old[c].map(|r| format::f32_from_f16(r as u16))),
+                false => U32::from_array(l, &old[c]).to_f32_bits(),
+            },
+        );
         let d_alpha = if n == 4 { d[3] } else { F32::splat(l, 1.0) };
         let mut same = live;
         for c in (0..n).filter(|&c| self.target.mask.contains(c)) {
@@ -404,8 +455,29 @@ fn blend_float<L: Lanes>(
     d_alpha: F32<L>,
     constant: [f32; 4],
 ) -> F32<L> {
+    let sf = float_factor(l, b.src_factor, c, s, d, d_alpha, constant);
+    let df = float_factor(l, b.dst_factor, c, s, d, d_alpha, constant);
+    match b.operation {
+        BlendOperation::Add => s[c] * sf + d[c] * df,
+        BlendOperation::Subtract => s[c] * sf - d[c] * df,
+        BlendOperation::ReverseSubtract => d[c] * df - s[c] * sf,
+        BlendOperation::Min => s[c].min(d[c]),
+        BlendOperation::Max => s[c].max(d[c]),
+    }
+}
+
+#[inline(always)]
+fn float_factor<L: Lanes>(
+    l: L,
+    f: BlendFactor,
+    c: usize,
+    s: &Channels<F32<L>>,
+    d: &Channels<F32<L>>,
+    d_alpha: F32<L>,
+    constant: [f32; 4],
+) -> F32<L> {
     let one = F32::splat(l, 1.0);
-    let factor = |f: BlendFactor| match f {
+    match f {
         BlendFactor::Zero => F32::splat(l, 0.0),
         BlendFactor::One => one,
         BlendFactor::Src => s[c],
@@ -420,13 +492,6 @@ fn blend_float<L: Lanes>(
         BlendFactor::SrcAlphaSaturated => s[3].min(one - d_alpha),
         BlendFactor::Constant => F32::splat(l, constant[c]),
         BlendFactor::OneMinusConstant => one - F32::splat(l, constant[c]),
-    };
-    match b.operation {
-        BlendOperation::Add => s[c] * factor(b.src_factor) + d[c] * factor(b.dst_factor),
-        BlendOperation::Subtract => s[c] * factor(b.src_factor) - d[c] * factor(b.dst_factor),
-        BlendOperation::ReverseSubtract => d[c] * factor(b.dst_factor) - s[c] * factor(b.src_factor),
-        BlendOperation::Min => s[c].min(d[c]),
-        BlendOperation::Max => s[c].max(d[c]),
     }
 }
 

@@ -6,8 +6,11 @@ use crate::MAX_VARYINGS;
 use crate::format;
 use crate::geometry::Triangle;
 use crate::shader::{PACKETS, ShadeBlock, VaryingPlanes};
-use crate::simd::{F32, LANES, Lanes};
+use crate::simd::{F32, I32, LANES, Lanes};
 use crate::texture::Block;
+
+const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
+const IY: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
 
 /// Screen-space frame of a triangle, from which any varying's plane follows
 /// (rules §3.6).
@@ -152,8 +155,8 @@ pub(super) fn inside_clip_planes<L: Lanes>(l: L, env: &Env<'_, '_>, t: &Triangle
         });
         let [base, gx, gy] = frame.plane(q, place.x, place.y);
         for k in 0..PACKETS {
-            let ix = F32::from_array(l, &core::array::from_fn(|i| (i % 8) as f32));
-            let iy = F32::from_array(l, &core::array::from_fn(|i| (2 * k + i / 8) as f32));
+            let ix = I32::from_array(l, &IX).to_f32();
+            let iy = (I32::from_array(l, &IY) + I32::splat(l, 2 * k as i32)).to_f32();
             let v = (F32::splat(l, base) + ix * gx) + iy * gy;
             let out = !v.ge(F32::splat(l, 0.0)).bits();
             m &= !(u64::from(out) << (16 * k));

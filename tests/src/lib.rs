@@ -1,8 +1,12 @@
 //! Cross-crate suites: the naive twin of the rasteriser, its scene description,
 //! seeded random cases, and readers of the peers' files.
 
+pub mod check;
 pub mod compare;
 pub mod digest;
+pub mod gpu_run;
 pub mod lcg;
+pub mod random;
+pub mod shrink;
 pub mod tricov;
 pub mod twin;

@@ -130,6 +130,8 @@ fn color<L: Lanes>(source: &ColorSource, l: L, o: usize, f: &Fragment<'_, L>) ->
         *v = match source {
             ColorSource::Constant(k) => F32::splat(l, k[o][c]),
             ColorSource::Varyings => f.varying((4 * o + c) % 6),
+            ColorSource::Columns(Some(alpha)) if c == 3 => F32::splat(l, *alpha),
+            ColorSource::Columns(_) => f.column().to_f32() / 255.0,
             _ => wild(&WILD_COLORS, l, (o + c) as i32, f.varying(c), f),
         };
     }

@@ -14,6 +14,8 @@ pub enum ColorSource {
     Geometry,
     /// NaN, infinities and values out of every range, by position, and varyings.
     Wild,
+    /// Column / 255 in red, green and blue, and in alpha unless it is given.
+    Columns(Option<f32>),
 }
 
 /// Which fragments are thrown away.
@@ -134,6 +136,10 @@ impl Program {
             ColorSource::Constant(c) => c[o],
             ColorSource::Varyings => std::array::from_fn(|c| f.varyings[(4 * o + c) % 6]),
             ColorSource::Geometry => geometry(o, f),
+            ColorSource::Columns(alpha) => {
+                let v = f.x as f32 / 255.0;
+                [v, v, v, alpha.unwrap_or(v)]
+            }
             ColorSource::Wild => {
                 std::array::from_fn(|c| wild(&WILD_COLORS, (o + c) as u32, f.varyings[c], f))
             }

@@ -7,6 +7,9 @@ use super::clip::{Clipped, Clipper, Screen};
 use super::convert::rne;
 use super::vertex::Vertex;
 
+/// Largest snapped coordinate: 16384 pixels.
+const SNAP_LIMIT: f64 = 4_194_304.0;
+
 /// A corner of a triangle on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
@@ -82,7 +85,14 @@ impl<'a> Setup<'a> {
             c.frustum_culled += 1;
             return Vec::new();
         }
-        let corners: Vec<_> = polygon.iter().map(|v| self.corner(v)).collect();
+        let Some(corners) = polygon
+            .iter()
+            .map(|v| self.corner(v))
+            .collect::<Option<Vec<_>>>()
+        else {
+            c.non_finite += 1;
+            return Vec::new();
+        };
         self.pieces(&corners, c)
             .into_iter()
             .zip(0..)
@@ -102,19 +112,22 @@ impl<'a> Setup<'a> {
             .collect()
     }
 
-    fn corner(&self, v: &Vertex) -> Corner {
+    /// Nothing where cutting an edge between vertices of wildly different
+    /// magnitude has left a vertex outside the guard band.
+    fn corner(&self, v: &Vertex) -> Option<Corner> {
         let [x, y, z, w] = v.position;
         let (s, port) = (&self.screen, &self.viewport);
         let sx = s.cx + (x / w) * s.hw;
         let sy = s.cy - (y / w) * s.hh;
         let z = (z / w) * (port.max_depth - port.min_depth) + port.min_depth;
-        let snap = |v: f32| rne(256.0 * f64::from(v)) as i64;
-        Corner {
-            xy: [snap(sx), snap(sy)],
+        let snap = |v: f32| rne(256.0 * f64::from(v));
+        let inside = snap(sx).abs() <= SNAP_LIMIT && snap(sy).abs() <= SNAP_LIMIT && z.is_finite();
+        inside.then(|| Corner {
+            xy: [snap(sx) as i64, snap(sy) as i64],
             z,
             inverse_w: 1.0 / w,
             vertex: *v,
-        }
+        })
     }
 
     fn pieces(&self, corners: &[Corner], c: &mut PrimitiveCounters) -> Vec<[Corner; 3]> {

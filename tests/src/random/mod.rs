@@ -1,0 +1,90 @@
+//! Seeded random cases: the same numbers on every machine.
+
+mod case;
+mod draw;
+mod geometry;
+mod state;
+
+pub use case::random_case;
+pub use geometry::{Screen, grid_triangulation};
+
+/// PCG-XSH-RR, 64 bits of state, 32 of output.
+#[derive(Clone, Debug)]
+pub struct Random {
+    state: u64,
+}
+
+impl Random {
+    /// A generator of its own for each seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        let mut r = Self {
+            state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
+        };
+        r.next();
+        r.next();
+        r
+    }
+
+    /// 32 random bits.
+    #[allow(
+        clippy::should_implement_trait,
+        reason = "an endless generator is no iterator here"
+    )]
+    pub fn next(&mut self) -> u32 {
+        let s = self.state;
+        self.state = s
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        ((((s >> 18) ^ s) >> 27) as u32).rotate_right((s >> 59) as u32)
+    }
+
+    /// 0..n.
+    pub fn below(&mut self, n: u32) -> u32 {
+        ((u64::from(self.next()) * u64::from(n)) >> 32) as u32
+    }
+
+    /// lo..=hi.
+    pub fn between(&mut self, lo: i32, hi: i32) -> i32 {
+        lo + self.below((hi - lo + 1) as u32) as i32
+    }
+
+    /// True once in n times.
+    pub fn one_in(&mut self, n: u32) -> bool {
+        self.below(n) == 0
+    }
+
+    /// lo..hi in 2²⁴ steps.
+    pub fn float(&mut self, lo: f32, hi: f32) -> f32 {
+        lo + (hi - lo) * ((self.next() >> 8) as f32 / 16_777_216.0)
+    }
+
+    /// One of the list.
+    pub fn pick<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len() as u32) as usize]
+    }
+
+    /// An array of what `f` gives.
+    pub fn array<T, const N: usize>(&mut self, mut f: impl FnMut(&mut Self) -> T) -> [T; N] {
+        std::array::from_fn(|_| f(self))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_hold_and_seeds_differ() {
+        let mut r = Random::new(1);
+        for _ in 0..1000 {
+            assert!((-3..=4).contains(&r.between(-3, 4)));
+            assert!((0.5..2.0).contains(&r.float(0.5, 2.0)));
+        }
+        assert_ne!(Random::new(2).next(), Random::new(3).next());
+        assert_eq!(
+            Random::new(7).array::<_, 3>(Random::next),
+            Random::new(7).array::<_, 3>(Random::next)
+        );
+    }
+}

@@ -10,10 +10,10 @@ use gnomon_raster::state::{
 use gnomon_raster::{Format, GpuConfig, LoadOp, StoreOp};
 use gnomon_tests::gpu_run::run;
 use gnomon_tests::lcg::CLASSES;
+use gnomon_tests::parallel;
 use gnomon_tests::random::Screen;
 use gnomon_tests::tricov::{CoveredTriangle, Tricov};
 use gnomon_tests::twin::{DepthImage, DepthUse, TwinCase, TwinDraw, TwinPass};
-use rayon::prelude::*;
 
 /// Pixels of the file's window that the GPU covers.
 fn covered(file: &Tricov, t: &CoveredTriangle) -> Vec<bool> {

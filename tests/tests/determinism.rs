@@ -6,8 +6,8 @@
 use gnomon_raster::{GpuConfig, SimdLevel};
 use gnomon_tests::digest::{Digest, digest};
 use gnomon_tests::gpu_run::run_observed;
+use gnomon_tests::parallel;
 use gnomon_tests::random::random_case;
-use rayon::prelude::*;
 
 const CASES: u64 = 40;
 
@@ -62,7 +62,7 @@ fn same_everywhere(seed: u64) -> Digest {
 
 #[test]
 fn threads_tiles_and_simd_levels_change_no_bit() {
-    let digests: Vec<_> = (0..CASES).into_par_iter().map(same_everywhere).collect();
+    let digests = parallel::map(0..CASES, same_everywhere);
     let mut all = Digest::default();
     digests.iter().for_each(|d| all.number(d.0));
     println!("combined digest of {CASES} cases: {:016x}", all.0);

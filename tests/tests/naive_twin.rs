@@ -1,12 +1,11 @@
 //! The GPU equals the naive twin, to the bit, on every attachment and counter.
 //!
 //! `GNOMON_TWIN_CASES` and `GNOMON_TWIN_SEED` choose how many seeds, from which;
+//! `GNOMON_TWIN_SHOW` how many differences are printed;
 //! the skip setting, tile size, threads and SIMD level differ from seed to seed.
 
-use std::sync::Mutex;
-
 use gnomon_tests::check::{check, explain};
-use rayon::prelude::*;
+use gnomon_tests::parallel;
 
 fn setting(name: &str, default: u64) -> u64 {
     match std::env::var(name) {
@@ -24,18 +23,12 @@ fn gpu_equals_twin_on_random_cases() {
     // Panics of the GPU are caught and reported with their seed.
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
-    let failures = Mutex::new(Vec::new());
-    (first..first + cases).into_par_iter().for_each(|seed| {
-        if let Err(e) = check(seed) {
-            failures
-                .lock()
-                .expect("no panic while locked")
-                .push((seed, e));
-        }
-    });
-    let mut failures = failures.into_inner().expect("no panic while locked");
-    failures.sort();
-    for (_, e) in failures.iter().take(5) {
+    let results = parallel::map(first..first + cases, |seed| (seed, check(seed)));
+    let failures: Vec<_> = results
+        .into_iter()
+        .filter_map(|(seed, r)| Some((seed, r.err()?)))
+        .collect();
+    for (_, e) in failures.iter().take(setting("GNOMON_TWIN_SHOW", 5) as usize) {
         println!("{e}\n");
     }
     if let (1, Some((seed, _))) = (cases, failures.first()) {

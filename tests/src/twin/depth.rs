@@ -123,7 +123,7 @@ fn offset(bias: &DepthBias, plane: &Plane, z: [f32; 3], encoding: Encoding) -> f
     }
     let r = match encoding {
         Encoding::D24 => pow2(-24),
-        Encoding::Float => pow2(exponent(z) - 23),
+        Encoding::Float => float_step(z),
     };
     let steepest = plane.gx.abs().max(plane.gy.abs());
     let b = f64::from(bias.constant) * r + f64::from(bias.slope) * steepest;
@@ -137,12 +137,8 @@ fn offset(bias: &DepthBias, plane: &Plane, z: [f32; 3], encoding: Encoding) -> f
     }
 }
 
-/// floor(log₂) of the largest |z|; 0 if all are 0.
-fn exponent(z: [f32; 3]) -> i32 {
+/// 2^(e − 23), e being the exponent of the largest |z|; 0 if all are 0.
+fn float_step(z: [f32; 3]) -> f64 {
     let largest = z.iter().fold(0.0f32, |m, z| m.max(z.abs()));
-    if largest == 0.0 {
-        0
-    } else {
-        floor_log2(f64::from(largest))
-    }
+    if largest == 0.0 { 0.0 } else { pow2(floor_log2(f64::from(largest)) - 23) }
 }

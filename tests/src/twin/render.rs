@@ -177,12 +177,13 @@ fn whole([w, h]: [u32; 2]) -> Viewport {
 
 /// Everything before pixels, with its counters.
 fn triangles(draw: &TwinDraw, setup: &Setup<'_>, c: &mut Counters) -> Vec<Triangle> {
-    let sequence = sequence(draw);
     let corners = match setup.state.topology {
         PrimitiveTopology::TriangleList => 3,
         PrimitiveTopology::LineList => 2,
         PrimitiveTopology::PointList => 1,
     };
+    let mut sequence = sequence(draw);
+    sequence.truncate(sequence.len() / corners * corners);
     let mut list = Vec::new();
     let mut number = 0;
     for instance in 0..draw.instances {

@@ -45,6 +45,30 @@ pub struct UnknownScene {
     pub known: Vec<&'static str>,
 }
 
-fn suggestion(nearest: &Option<&'static str>) -> String {
+pub(crate) fn suggestion(nearest: &Option<&'static str>) -> String {
     nearest.map_or(String::new(), |n| format!(" (did you mean '{n}'?)"))
+}
+
+/// The known name with the fewest edits from `name`, if few enough to be a
+/// slip of the finger.
+pub(crate) fn nearest(name: &str, known: &[&'static str]) -> Option<&'static str> {
+    let close = |known: &&'static str| (edit_distance(name, known), *known);
+    let (distance, known) = known.iter().map(close).min_by_key(|(d, _)| *d)?;
+    (distance <= 1 + known.len() / 4).then_some(known)
+}
+
+/// Levenshtein distance, by characters.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, to) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(from != *to);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
 }

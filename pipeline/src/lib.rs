@@ -31,12 +31,16 @@
 pub mod adjacency;
 pub mod caster;
 pub mod error;
+pub mod heat;
 pub mod light;
 pub mod mesh;
 pub mod obj;
 pub mod oracle;
+pub mod render;
 pub mod scene;
 pub mod shape;
 pub mod silhouette;
+pub mod technique;
+mod techniques;
 pub mod volume;
 pub mod winding;

@@ -15,7 +15,7 @@ mod peers;
 mod spheres;
 
 use super::Scene;
-use crate::error::UnknownScene;
+use crate::error::{UnknownScene, nearest};
 
 pub use parallel_plates::PLATES;
 
@@ -80,39 +80,15 @@ const fn entry(
 pub fn build(name: &str) -> Result<Scene, UnknownScene> {
     match SCENES.iter().find(|s| s.name == name) {
         Some(scene) => Ok(scene.build()),
-        None => Err(UnknownScene {
-            name: name.to_owned(),
-            nearest: nearest(name),
-            known: SCENES.iter().map(|s| s.name).collect(),
-        }),
-    }
-}
-
-/// The known name with the fewest edits from `name`, if few enough to be a
-/// slip of the finger.
-fn nearest(name: &str) -> Option<&'static str> {
-    let close = |known: &'static str| (edit_distance(name, known), known);
-    let (distance, known) = SCENES
-        .iter()
-        .map(|s| close(s.name))
-        .min_by_key(|(d, _)| *d)?;
-    (distance <= 1 + known.len() / 4).then_some(known)
-}
-
-/// Levenshtein distance, by characters.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, to) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(from != *to);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        None => {
+            let known: Vec<&'static str> = SCENES.iter().map(|s| s.name).collect();
+            Err(UnknownScene {
+                name: name.to_owned(),
+                nearest: nearest(name, &known),
+                known,
+            })
         }
     }
-    row[b.len()]
 }
 
 #[cfg(test)]

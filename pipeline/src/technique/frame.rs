@@ -1,0 +1,67 @@
+//! What a technique hands to the driver.
+
+use gnomon_raster::{CommandList, TextureId};
+
+use crate::scene::SceneWarning;
+
+/// Something amiss that did not stop the work: code, count, message.
+pub type Warning = SceneWarning;
+
+/// Command lists and named outputs of one picture.
+#[derive(Clone)]
+pub struct Frame {
+    /// Everything to draw; may be submitted any number of times.
+    pub list: CommandList,
+    /// Where the results are afterwards.
+    pub outputs: Outputs,
+    /// What was found amiss on the way.
+    pub warnings: Vec<Warning>,
+    /// What became of each caster, light after light; empty for techniques
+    /// without casters.
+    pub casters: Vec<CasterUse>,
+}
+
+/// The textures that hold a frame's results, at mip 0, layer 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outputs {
+    /// Linear light.
+    pub color: TextureId,
+    /// Depth of the visible surfaces; 1 where there is none.
+    pub depth_stencil: TextureId,
+    /// Where visibility of the light is.
+    pub visibility: VisibilityOutput,
+}
+
+/// How the light's visibility follows from a frame's textures. It is NaN where
+/// depth is 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VisibilityOutput {
+    /// 1 at every surface.
+    Full,
+    /// 1 where the stencil is 0, else 0.
+    StencilZero,
+}
+
+/// How a caster's volume was counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VolumeMethod {
+    /// Sides, where they pass the depth test.
+    DepthPass,
+    /// Sides and caps, where they fail the depth test.
+    DepthFail,
+    /// Not drawn: the volume is outside the view.
+    Skipped,
+}
+
+/// What became of one caster for one light.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CasterUse {
+    /// Index into [`crate::scene::Scene::objects`].
+    pub object: usize,
+    /// Index into [`crate::scene::Scene::lights`].
+    pub light: usize,
+    /// How it was counted.
+    pub method: VolumeMethod,
+    /// Triangles of light cap, dark cap and sides of its volume.
+    pub triangles: [usize; 3],
+}

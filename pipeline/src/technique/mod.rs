@@ -1,0 +1,174 @@
+//! What a shadow technique is, and the list of all of them.
+//!
+//! A technique is a pure function from a scene and parameters to a [`Frame`]:
+//! command lists for the emulated GPU and the names of their outputs. It
+//! touches no thread, clock or file; [`crate::render`] runs it.
+//!
+//! To add one, write its file in `techniques/` and add one line to
+//! [`techniques`]; command line, suites and tables pick it up from there.
+
+mod frame;
+mod params;
+
+use gnomon_raster::{Gpu, TextureDescriptor, TextureId};
+use thiserror::Error;
+
+pub use frame::{CasterUse, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
+pub use params::{ParamInfo, Params};
+
+use crate::caster::RefusedCaster;
+use crate::scene::Scene;
+use crate::techniques::{ShadowVolumes, Unshadowed};
+
+/// Creates the textures of a frame. A [`Gpu`] is one.
+pub trait TextureSource {
+    /// Creates a texture of zeros.
+    ///
+    /// # Errors
+    /// For sizes or levels that are not possible.
+    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error>;
+}
+
+impl TextureSource for Gpu {
+    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
+        self.create_texture(desc)
+    }
+}
+
+/// A way to shade a scene with shadows.
+pub trait Technique: Sync {
+    /// Name on the command line, kebab-case.
+    fn name(&self) -> &'static str;
+
+    /// One line for people.
+    fn summary(&self) -> &'static str;
+
+    /// Its parameters, in the order in which they are listed.
+    fn params(&self) -> &'static [ParamInfo];
+
+    /// The frame of `scene` at `size` (width, height); textures come from `textures`.
+    ///
+    /// # Errors
+    /// The scene cannot be drawn by this technique, or the size is impossible.
+    fn frame(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Frame, TechniqueError>;
+}
+
+/// All techniques, in the order in which they are listed.
+pub fn techniques() -> &'static [&'static dyn Technique] {
+    static LIST: &[&dyn Technique] = &[&Unshadowed, &ShadowVolumes];
+    LIST
+}
+
+/// The technique called `name`.
+///
+/// # Errors
+/// There is none: the error lists all names and suggests the nearest.
+pub fn find(name: &str) -> Result<&'static dyn Technique, TechniqueError> {
+    let all = techniques();
+    if let Some(technique) = all.iter().find(|t| t.name() == name) {
+        return Ok(*technique);
+    }
+    let known: Vec<&'static str> = all.iter().map(|t| t.name()).collect();
+    Err(TechniqueError::Unknown {
+        name: name.to_owned(),
+        nearest: crate::error::nearest(name, &known),
+        known,
+    })
+}
+
+/// Why a technique gives no frame.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum TechniqueError {
+    /// No technique of that name.
+    #[error("no technique is called '{name}'{}; there are: {}", crate::error::suggestion(.nearest), .known.join(", "))]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The closest known name, when one is close.
+        nearest: Option<&'static str>,
+        /// All known names.
+        known: Vec<&'static str>,
+    },
+    /// Not of the form `key=value`.
+    #[error("parameter '{given}' is not of the form key=value")]
+    NotAnAssignment {
+        /// What was given.
+        given: String,
+    },
+    /// No parameter of that name.
+    #[error(
+        "technique '{technique}' has no parameter '{key}'{}; it has: {}",
+        crate::error::suggestion(.nearest), .known.join(", ")
+    )]
+    UnknownParameter {
+        /// The technique.
+        technique: &'static str,
+        /// The parameter asked for.
+        key: String,
+        /// The closest known name, when one is close.
+        nearest: Option<&'static str>,
+        /// All known names.
+        known: Vec<&'static str>,
+    },
+    /// A value that the parameter does not take.
+    #[error("parameter {key} of technique '{technique}' is '{value}'; valid are: {valid}")]
+    BadValue {
+        /// The technique.
+        technique: &'static str,
+        /// The parameter.
+        key: &'static str,
+        /// The value given.
+        value: String,
+        /// The values taken.
+        valid: &'static str,
+    },
+    /// A light that the scene does not have.
+    #[error("light {given} was asked for; the scene has {count}, numbered from 0")]
+    NoSuchLight {
+        /// The number given.
+        given: usize,
+        /// Number of lights of the scene.
+        count: usize,
+    },
+    /// A caster that is not closed.
+    #[error(transparent)]
+    RefusedCaster(#[from] RefusedCaster),
+    /// The GPU refuses a texture.
+    #[error(transparent)]
+    Gpu(#[from] gnomon_raster::Error),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn techniques_are_found_by_name() {
+        for technique in techniques() {
+            assert_eq!(find(technique.name()).unwrap().name(), technique.name());
+            assert!(!technique.summary().is_empty());
+        }
+        let message = find("shadow-volume").err().unwrap().to_string();
+        assert!(
+            message.contains("did you mean 'shadow-volumes'") && message.contains("unshadowed"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn defaults_are_valid_values() {
+        for technique in techniques() {
+            for info in technique.params() {
+                let given = format!("{}={}", info.name, info.default);
+                Params::parse(*technique, [given]).unwrap();
+            }
+        }
+    }
+}

@@ -1,0 +1,364 @@
+//! The passes that techniques share: ambient light with depth, and light added
+//! per light source, over the same draws of the scene.
+//!
+//! # Colour
+//!
+//! Shaders compute linear light and passes add it. The default target is
+//! `rgba16f`, precise enough that its sRGB picture shows no bands. `rgba8`
+//! holds the same linear light in 8 bits, as the papers' hardware and the peers'
+//! renderers do: half the bytes, bands in the dark, sums that
+//! saturate. What a value means does not depend on the format.
+//!
+//! # Near plane
+//!
+//! All geometry is drawn with depth clamp, so that the near plane never cuts a
+//! triangle and a volume's cap keeps the surface's depth plane to the bit.
+//! Objects that reach nearer than the near plane get it as a clip plane, which
+//! drops fragments and makes no vertices.
+
+use std::sync::Arc;
+
+use gnomon_raster::shader::FragmentStage;
+use gnomon_raster::state::{
+    ColorTargetState, CompareFunction, DepthState, DepthStencilState, PrimitiveState,
+    StencilFaceState, StencilOperation, StencilState,
+};
+use gnomon_raster::{
+    ColorAttachment, CommandList, DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp,
+    RenderPass, RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
+};
+use gnomon_shaders::surface::{Constant, Lambert, Phong};
+use gnomon_shaders::transform::{ClipFromWorld, Points, Surfaces};
+
+use crate::light::HardLight;
+use crate::mesh::narrow;
+use crate::scene::{Material, Object, Scene};
+use crate::technique::{
+    Frame, Outputs, ParamInfo, Params, TechniqueError, TextureSource, VisibilityOutput,
+};
+
+pub(super) const LIGHT: ParamInfo = ParamInfo {
+    name: "light",
+    default: "all",
+    valid: "all|N",
+    summary: "which lights shine: all, or one by its number; visibility is that of the first",
+};
+
+pub(super) const SHADING: ParamInfo = ParamInfo {
+    name: "shading",
+    default: "phong",
+    valid: "phong|lambert",
+    summary: "with the material's highlights, or diffuse only",
+};
+
+pub(super) const COLOR_FORMAT: ParamInfo = ParamInfo {
+    name: "color-format",
+    default: "rgba16f",
+    valid: "rgba16f|rgba8",
+    summary: "target for linear light; rgba8 costs half the bytes, shows bands and saturates",
+};
+
+pub(super) const DEPTH_FORMAT: ParamInfo = ParamInfo {
+    name: "depth-format",
+    default: "d24",
+    valid: "d24|d32f",
+    summary: "24-bit integer or 32-bit float depth",
+};
+
+/// The lights that `params` asks for, first one first.
+pub(super) fn lights(scene: &Scene, params: &Params) -> Result<Vec<usize>, TechniqueError> {
+    let count = scene.lights.len();
+    match params.get(LIGHT.name).parse() {
+        Err(_) => Ok((0..count).collect()),
+        Ok(given) if given < count => Ok(vec![given]),
+        Ok(given) => Err(TechniqueError::NoSuchLight { given, count }),
+    }
+}
+
+/// `what`, with the light's number where there are several.
+pub(super) fn label(what: &str, light: usize, lights: &[usize]) -> String {
+    if lights.len() == 1 {
+        what.to_owned()
+    } else {
+        format!("{what} {light}")
+    }
+}
+
+/// The attachments of a frame.
+pub(super) struct Targets {
+    color: TextureId,
+    depth_stencil: TextureId,
+}
+
+impl Targets {
+    pub(super) fn create(
+        [width, height]: [u32; 2],
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Self, TechniqueError> {
+        let rgba8 = params.get(COLOR_FORMAT.name) == "rgba8";
+        let color = if rgba8 {
+            Format::Rgba8Unorm
+        } else {
+            Format::Rgba16Float
+        };
+        let d32f = params.get(DEPTH_FORMAT.name) == "d32f";
+        let depth = if d32f {
+            Format::Depth32FloatStencil8
+        } else {
+            Format::Depth24Stencil8
+        };
+        Ok(Self {
+            color: textures.create(&TextureDescriptor::d2("color", color, width, height))?,
+            depth_stencil: textures.create(&TextureDescriptor::d2(
+                "depth-stencil",
+                depth,
+                width,
+                height,
+            ))?,
+        })
+    }
+
+    pub(super) fn frame(&self, passes: Vec<RenderPass>, visibility: VisibilityOutput) -> Frame {
+        Frame {
+            list: CommandList { passes },
+            outputs: Outputs {
+                color: self.color,
+                depth_stencil: self.depth_stencil,
+                visibility,
+            },
+            warnings: Vec::new(),
+            casters: Vec::new(),
+        }
+    }
+
+    fn color(&self, load: LoadOp<[f32; 4]>) -> Vec<ColorAttachment> {
+        vec![ColorAttachment {
+            texture: self.color,
+            subresource: Subresource::default(),
+            load,
+            store: StoreOp::Store,
+        }]
+    }
+
+    /// Depth and stencil as they are, but for the given loads.
+    pub(super) fn depth_stencil(
+        &self,
+        depth: LoadOp<f32>,
+        stencil: LoadOp<u8>,
+    ) -> Option<DepthStencilAttachment> {
+        Some(DepthStencilAttachment {
+            texture: self.depth_stencil,
+            subresource: Subresource::default(),
+            depth_load: depth,
+            depth_store: StoreOp::Store,
+            stencil_load: stencil,
+            stencil_store: StoreOp::Store,
+        })
+    }
+}
+
+/// Where a lit pass adds light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LitTest {
+    /// At every surface.
+    Everywhere,
+    /// Where the stencil is 0; objects that take no shadow set it to 0 first.
+    StencilZero,
+}
+
+/// Geometry of one object, ready to draw.
+struct SurfaceDraw<'a> {
+    object: &'a Object,
+    vertices: Arc<VertexBuffer>,
+    indices: Arc<IndexBuffer>,
+    primitive: PrimitiveState,
+}
+
+/// All objects of a scene, ready to draw in any pass.
+pub(super) struct SceneDraws<'a> {
+    scene: &'a Scene,
+    clip_from_world: ClipFromWorld,
+    surfaces: Vec<SurfaceDraw<'a>>,
+    highlights: bool,
+}
+
+impl<'a> SceneDraws<'a> {
+    pub(super) fn new(scene: &'a Scene, size: [u32; 2], params: &Params) -> Self {
+        let clip_from_world = clip_from_world(scene, size);
+        let drawn = scene
+            .objects
+            .iter()
+            .filter(|o| !o.mesh.triangles().is_empty());
+        Self {
+            scene,
+            clip_from_world,
+            surfaces: drawn.map(|o| SurfaceDraw::new(scene, o)).collect(),
+            highlights: params.get(SHADING.name) != "lambert",
+        }
+    }
+
+    /// Clears all attachments, then draws ambient light and depth.
+    pub(super) fn ambient_pass(&self, targets: &Targets) -> RenderPass {
+        let [r, g, b] = self.scene.background;
+        let ambient = self.scene.ambient;
+        let draw = |s: &SurfaceDraw<'_>| {
+            let albedo = s.object.material.albedo;
+            let [r, g, b] = [0, 1, 2].map(|i| ambient[i] * albedo[i]);
+            s.draw(RenderPipeline {
+                label: "ambient".into(),
+                vertex: Points(self.clip_from_world).stage(),
+                fragment: Some(Constant([r, g, b, 1.0]).stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: DepthStencilState::opaque(),
+                color_targets: vec![ColorTargetState::OPAQUE],
+            })
+        };
+        RenderPass {
+            label: "ambient".into(),
+            color: targets.color(LoadOp::Clear([r, g, b, 1.0])),
+            depth_stencil: targets.depth_stencil(LoadOp::Clear(1.0), LoadOp::Clear(0)),
+            draws: self.surfaces.iter().map(draw).collect(),
+        }
+    }
+
+    /// Adds the light of light `light` to what the ambient pass drew.
+    pub(super) fn lit_pass(
+        &self,
+        targets: &Targets,
+        light: usize,
+        label: &str,
+        test: LitTest,
+    ) -> RenderPass {
+        let draw = |s: &SurfaceDraw<'_>| {
+            s.draw(RenderPipeline {
+                label: label.to_owned(),
+                vertex: Surfaces(self.clip_from_world).stage(),
+                fragment: Some(self.lit_shader(&s.object.material, light)),
+                primitive: s.primitive.clone(),
+                depth_stencil: lit_state(test, s.object.receives),
+                color_targets: vec![ColorTargetState::ADDITIVE],
+            })
+        };
+        RenderPass {
+            label: label.to_owned(),
+            color: targets.color(LoadOp::Load),
+            depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws: self.surfaces.iter().map(draw).collect(),
+        }
+    }
+
+    fn lit_shader(&self, material: &Material, light: usize) -> FragmentStage {
+        let light = &self.scene.lights[light];
+        let coloured = |c: [f32; 3]| [0, 1, 2].map(|i| c[i] * light.colour[i]);
+        let lambert = Lambert {
+            diffuse: coloured(material.albedo),
+            light: homogeneous(light.hard()),
+        };
+        if !self.highlights || material.specular == [0.0; 3] {
+            return lambert.stage();
+        }
+        let phong = Phong {
+            lambert,
+            specular: coloured(material.specular),
+            shininess: material.shininess,
+            eye: narrow(self.scene.camera.eye),
+        };
+        phong.stage()
+    }
+}
+
+impl<'a> SurfaceDraw<'a> {
+    fn new(scene: &Scene, object: &'a Object) -> Self {
+        let shading = object.mesh.shading_vertices();
+        let rows = shading.positions.iter().zip(&shading.normals);
+        let data = rows.flat_map(|(p, n)| p.iter().chain(n).copied()).collect();
+        let mut primitive = clamped();
+        if crosses_near_plane(scene, object) {
+            primitive.clip_planes.push([0.0, 0.0, 1.0, 0.0]);
+        }
+        Self {
+            object,
+            vertices: Arc::new(VertexBuffer { data, stride: 6 }),
+            indices: index_buffer(&shading.triangles),
+            primitive,
+        }
+    }
+
+    fn draw(&self, pipeline: RenderPipeline) -> Draw {
+        Draw::indexed(
+            &self.object.name,
+            &Arc::new(pipeline),
+            &self.vertices,
+            &self.indices,
+        )
+    }
+}
+
+/// Whether some vertex may be nearer than the near plane.
+fn crosses_near_plane(scene: &Scene, object: &Object) -> bool {
+    let camera = &scene.camera;
+    let [_, _, forward] = camera.basis();
+    let nearest = camera.near * (1.0 + 1e-4);
+    let depth = |i| (object.mesh.position(i) - camera.eye).dot(forward);
+    (0..object.mesh.positions().len() as u32).any(|i| depth(i) < nearest)
+}
+
+/// Nothing culled, depth clamped: for scene geometry and volumes alike.
+pub(super) fn clamped() -> PrimitiveState {
+    PrimitiveState {
+        depth_clamp: true,
+        ..PrimitiveState::default()
+    }
+}
+
+pub(super) fn clip_from_world(scene: &Scene, [width, height]: [u32; 2]) -> ClipFromWorld {
+    ClipFromWorld(
+        scene
+            .camera
+            .clip_from_world(f64::from(width) / f64::from(height)),
+    )
+}
+
+pub(super) fn index_buffer(triangles: &[[u32; 3]]) -> Arc<IndexBuffer> {
+    Arc::new(IndexBuffer::new(
+        triangles.iter().flatten().copied().collect(),
+    ))
+}
+
+fn homogeneous(light: HardLight) -> [f32; 4] {
+    let (HardLight::Point(v) | HardLight::Directional(v)) = light;
+    let [x, y, z] = narrow(v);
+    [x, y, z, if light.is_directional() { 0.0 } else { 1.0 }]
+}
+
+fn lit_state(test: LitTest, receives: bool) -> DepthStencilState {
+    match (test, receives) {
+        (LitTest::StencilZero, true) => DepthStencilState::equal_where_stencil_matches(),
+        (LitTest::StencilZero, false) => {
+            let face = StencilFaceState {
+                pass_op: StencilOperation::Zero,
+                ..StencilFaceState::IGNORE
+            };
+            DepthStencilState {
+                stencil: StencilState {
+                    front: face,
+                    back: face,
+                },
+                ..equal_depth()
+            }
+        }
+        (LitTest::Everywhere, _) => equal_depth(),
+    }
+}
+
+fn equal_depth() -> DepthStencilState {
+    DepthStencilState {
+        depth: DepthState {
+            compare: CompareFunction::Equal,
+            write: false,
+            bounds: None,
+        },
+        ..DepthStencilState::default()
+    }
+}

@@ -1,0 +1,213 @@
+//! Fragment shaders of surfaces, in the passes of the papers: ambient light
+//! once, then diffuse and specular light added per light source.
+//!
+//! Output is linear light in attachment 0. [`Lambert`] and [`Phong`] read the
+//! varyings of [`crate::transform::Surfaces`]. A surface seen from behind is
+//! shaded with its normal turned round.
+
+use gnomon_raster::shader::{Fragment, FragmentShader};
+use gnomon_raster::{F32, Lanes};
+
+use crate::vector::V3;
+
+/// One colour everywhere: the ambient pass, or unlit geometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant(pub [f32; 4]);
+
+impl FragmentShader for Constant {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        f.set_color(0, self.0.map(|c| F32::splat(l, c)));
+    }
+}
+
+/// Diffuse light: `diffuse · max(n·l, 0)`, alpha 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lambert {
+    /// Albedo times the light's colour.
+    pub diffuse: [f32; 3],
+    /// The light: `(position, 1)` or `(direction towards it, 0)`, world space.
+    pub light: [f32; 4],
+}
+
+impl FragmentShader for Lambert {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let (normal, position) = inputs(f);
+        let to_light = position.towards(self.light);
+        let cosine = cosine(normal, to_light, facing(f)).max(F32::splat(l, 0.0));
+        let [r, g, b] = self.diffuse.map(|d| cosine * d);
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+    }
+}
+
+/// Diffuse and specular light after Phong:
+/// `diffuse · n·l + specular · max(r·v, 0)^shininess` where `n·l > 0`, r being l
+/// mirrored at n; alpha 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phong {
+    /// The diffuse part.
+    pub lambert: Lambert,
+    /// Specular reflectance times the light's colour.
+    pub specular: [f32; 3],
+    /// The exponent, limited to 0..=[`MAX_SHININESS`].
+    pub shininess: f32,
+    /// The eye in world space.
+    pub eye: [f32; 3],
+}
+
+impl FragmentShader for Phong {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let (normal, position) = inputs(f);
+        let [x, y, z] = self.eye;
+        let (to_light, to_eye) = (
+            position.towards(self.lambert.light),
+            position.towards([x, y, z, 1.0]),
+        );
+        let n_l = cosine(normal, to_light, facing(f));
+        let n_v = cosine(normal, to_eye, facing(f));
+        let l_v = cosine(to_light, to_eye, 1.0);
+        let zero = F32::splat(l, 0.0);
+        let diffuse = n_l.max(zero);
+        let mirrored = (n_l * 2.0 * n_v - l_v).clamp(0.0, 1.0);
+        let highlight = n_l
+            .gt(zero)
+            .select_f32(power(mirrored, self.shininess), zero);
+        let channel = |i: usize| diffuse * self.lambert.diffuse[i] + highlight * self.specular[i];
+        f.set_color(0, [channel(0), channel(1), channel(2), zero]);
+    }
+}
+
+/// Largest exponent of [`power`].
+pub const MAX_SHININESS: f32 = 4096.0;
+
+/// Normal and world-space position.
+#[inline(always)]
+fn inputs<L: Lanes>(f: &Fragment<'_, L>) -> (V3<L>, V3<L>) {
+    let three = |first: usize| V3([f.varying(first), f.varying(first + 1), f.varying(first + 2)]);
+    (three(0), three(3))
+}
+
+#[inline(always)]
+fn facing<L: Lanes>(f: &Fragment<'_, L>) -> f32 {
+    if f.front_facing() { 1.0 } else { -1.0 }
+}
+
+/// `sign` times the cosine of the angle between two vectors of any length; 0
+/// where one of them has none.
+#[inline(always)]
+fn cosine<L: Lanes>(a: V3<L>, b: V3<L>, sign: f32) -> F32<L> {
+    let squared = a.dot(a) * b.dot(b);
+    let length = squared
+        .max(F32::splat(squared.lanes(), f32::MIN_POSITIVE))
+        .sqrt();
+    a.dot(b) * sign / length
+}
+
+/// `x^exponent` for x in 0..=1 by repeated squaring, linear between whole
+/// exponents: only products, so the same bits everywhere.
+#[inline(always)]
+pub fn power<L: Lanes>(x: F32<L>, exponent: f32) -> F32<L> {
+    let limited = if exponent > 0.0 { exponent } else { 0.0 };
+    let limited = if limited < MAX_SHININESS {
+        limited
+    } else {
+        MAX_SHININESS
+    };
+    let whole = limited as u32;
+    let mut result = F32::splat(x.lanes(), 1.0);
+    let mut square = x;
+    let mut left = whole;
+    while left != 0 {
+        if left & 1 != 0 {
+            result = result * square;
+        }
+        square = square * square;
+        left >>= 1;
+    }
+    let part = limited - whole as f32;
+    if part == 0.0 {
+        return result;
+    }
+    result * (x * part + (1.0 - part))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gnomon_raster::shader::{ScalarVertexOutput, per_vertex};
+    use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
+    use gnomon_raster::{
+        ColorAttachment, CommandList, Draw, Format, Gpu, GpuConfig, LoadOp, RenderPass,
+        RenderPipeline, StoreOp, Subresource, TextureDescriptor,
+    };
+    use std::sync::Arc;
+
+    /// Exponents in the four channels.
+    struct Powers(f32, [f32; 4]);
+
+    impl FragmentShader for Powers {
+        #[inline(always)]
+        fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+            f.set_color(0, self.1.map(|e| power(F32::splat(l, self.0), e)));
+        }
+    }
+
+    fn powers(x: f32, exponents: [f32; 4]) -> [f32; 4] {
+        let corners = [[-1.0, 3.0], [-1.0, -1.0], [3.0, -1.0]];
+        let pipeline = Arc::new(RenderPipeline {
+            label: "powers".into(),
+            vertex: per_vertex(&[], move |v| {
+                let [x, y] = corners[v.vertex_index as usize];
+                ScalarVertexOutput {
+                    position: [x, y, 0.5, 1.0],
+                    ..Default::default()
+                }
+            }),
+            fragment: Some(Powers(x, exponents).into()),
+            primitive: PrimitiveState::default(),
+            depth_stencil: DepthStencilState::default(),
+            color_targets: vec![ColorTargetState::OPAQUE],
+        });
+        let mut gpu = Gpu::new(GpuConfig {
+            threads: 1,
+            ..GpuConfig::default()
+        })
+        .unwrap();
+        let texture = gpu
+            .create_texture(&TextureDescriptor::d2("out", Format::Rgba32Float, 1, 1))
+            .unwrap();
+        let subresource = Subresource::default();
+        let color = vec![ColorAttachment {
+            texture,
+            subresource,
+            load: LoadOp::DontCare,
+            store: StoreOp::Store,
+        }];
+        let draws = vec![Draw::vertices_only("powers", &pipeline, 3)];
+        let pass = RenderPass {
+            label: "powers".into(),
+            color,
+            depth_stencil: None,
+            draws,
+        };
+        gpu.submit(&CommandList { passes: vec![pass] }).unwrap();
+        gpu.texture(texture)
+            .unwrap()
+            .read_color(subresource)
+            .unwrap()[0]
+            .0
+    }
+
+    #[test]
+    fn power_follows_the_exponent() {
+        assert_eq!(
+            powers(0.5, [3.0, 0.0, f32::NAN, 10.0]),
+            [0.125, 1.0, 1.0, 1.0 / 1024.0]
+        );
+        assert_eq!(powers(1.0, [77.5, 1e9, -3.0, 1.0]), [1.0; 4]);
+        let [a, b, c, _] = powers(0.9, [30.0, 30.5, 31.0, 0.0]);
+        assert!(a > b && b > c);
+    }
+}

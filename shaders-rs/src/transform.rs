@@ -1,0 +1,70 @@
+//! Vertex shaders: from world to clip space.
+//!
+//! Scene geometry and shadow volumes go through the *same* expression tree,
+//! [`ClipFromWorld`], with the same operands: a scene vertex is `(p, 1)` and so
+//! is the volume's copy of it. Equal operands give equal bits, so a volume's
+//! light cap lies exactly on the surface that cast it.
+
+use gnomon_raster::shader::{Interpolation, Vertex, VertexShader};
+use gnomon_raster::{F32, Lanes};
+
+/// Rows of the matrix; row r of the product is
+/// `((m[r][0]·x + m[r][1]·y) + m[r][2]·z) + m[r][3]·w`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClipFromWorld(pub [[f32; 4]; 4]);
+
+impl ClipFromWorld {
+    /// Clip-space position of 16 vertices.
+    #[inline(always)]
+    pub fn apply<L: Lanes>(&self, [x, y, z, w]: [F32<L>; 4]) -> [F32<L>; 4] {
+        self.0
+            .map(|m| ((x * m[0] + y * m[1]) + z * m[2]) + w * m[3])
+    }
+}
+
+/// Attributes x, y, z; w is 1. No varyings. Further attributes are ignored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Points(pub ClipFromWorld);
+
+impl VertexShader for Points {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        let [x, y, z] = [v.attribute(0), v.attribute(1), v.attribute(2)];
+        v.set_position(self.0.apply([x, y, z, F32::splat(l, 1.0)]));
+    }
+}
+
+/// Attributes x, y, z, w: points and directions. No varyings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HomogeneousPoints(pub ClipFromWorld);
+
+impl VertexShader for HomogeneousPoints {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, _: L, v: &mut Vertex<'_, L>) {
+        let position = [0, 1, 2, 3].map(|i| v.attribute(i));
+        v.set_position(self.0.apply(position));
+    }
+}
+
+/// Attributes x, y, z and a normal. Varyings for [`crate::surface`]: the normal
+/// in 0..3, the world-space position in 3..6.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surfaces(pub ClipFromWorld);
+
+impl VertexShader for Surfaces {
+    fn varyings(&self) -> &[Interpolation] {
+        &[Interpolation::Perspective; 6]
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        let position = [0, 1, 2].map(|i| v.attribute(i));
+        for (i, p) in position.into_iter().enumerate() {
+            let normal = v.attribute(3 + i);
+            v.set_varying(i, normal);
+            v.set_varying(3 + i, p);
+        }
+        let [x, y, z] = position;
+        v.set_position(self.0.apply([x, y, z, F32::splat(l, 1.0)]));
+    }
+}

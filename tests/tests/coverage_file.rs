@@ -84,11 +84,9 @@ fn is_inside(file: &Tricov, t: &CoveredTriangle) -> bool {
 fn compare(path: &str) {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{path}: {e}"));
     let file = Tricov::parse(&bytes).unwrap_or_else(|e| panic!("{path}: {e}"));
-    let ours: Vec<_> = file
-        .triangles
-        .par_iter()
-        .map(|t| covered(&file, t))
-        .collect();
+    let ours = parallel::map(0..file.triangles.len() as u64, |k| {
+        covered(&file, &file.triangles[k as usize])
+    });
     println!("{path}: {}, {} triangles", file.name, file.triangles.len());
     let mut wrong = 0;
     for (class, name) in CLASSES.iter().enumerate() {

@@ -28,7 +28,10 @@ fn gpu_equals_twin_on_random_cases() {
         .into_iter()
         .filter_map(|(seed, r)| Some((seed, r.err()?)))
         .collect();
-    for (_, e) in failures.iter().take(setting("GNOMON_TWIN_SHOW", 5) as usize) {
+    for (_, e) in failures
+        .iter()
+        .take(setting("GNOMON_TWIN_SHOW", 5) as usize)
+    {
         println!("{e}\n");
     }
     if let (1, Some((seed, _))) = (cases, failures.first()) {

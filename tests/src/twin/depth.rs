@@ -140,5 +140,9 @@ fn offset(bias: &DepthBias, plane: &Plane, z: [f32; 3], encoding: Encoding) -> f
 /// 2^(e − 23), e being the exponent of the largest |z|; 0 if all are 0.
 fn float_step(z: [f32; 3]) -> f64 {
     let largest = z.iter().fold(0.0f32, |m, z| m.max(z.abs()));
-    if largest == 0.0 { 0.0 } else { pow2(floor_log2(f64::from(largest)) - 23) }
+    if largest == 0.0 {
+        0.0
+    } else {
+        pow2(floor_log2(f64::from(largest)) - 23)
+    }
 }

@@ -85,7 +85,7 @@ pub(super) fn outside_view(camera: &Camera, size: [u32; 2], mesh: &Mesh, light: 
     let [a, b, c, d] = corner_rays(camera, size);
     let [_, _, forward] = camera.basis();
     // Outward normals; corners run counter-clockwise seen from the eye.
-    let normals = [b.cross(a), c.cross(b), d.cross(c), a.cross(d), -forward];
+    let normals = [a.cross(b), b.cross(c), c.cross(d), d.cross(a), -forward];
     let corners = box_corners(mesh);
     normals.iter().any(|n| {
         let n = n.normalize();

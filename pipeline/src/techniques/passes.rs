@@ -15,9 +15,18 @@
 //! triangle and a volume's cap keeps the surface's depth plane to the bit.
 //! Objects that reach nearer than the near plane get it as a clip plane, which
 //! drops fragments and makes no vertices.
+//!
+//! # Origin
+//!
+//! f32 transforms resolve about 2^-22 of the largest coordinate. Where the eye
+//! looks at something much nearer than the world's origin is, [`View`] moves
+//! the origin next to the eye, by an amount that leaves differences of nearby
+//! f32 coordinates exact; scene and volumes move alike. Elsewhere the origin
+//! stays, and with it the peers' bits.
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{
     ColorTargetState, CompareFunction, DepthState, DepthStencilState, PrimitiveState,
@@ -31,8 +40,8 @@ use gnomon_shaders::surface::{Constant, Lambert, Phong};
 use gnomon_shaders::transform::{ClipFromWorld, Points, Surfaces};
 
 use crate::light::HardLight;
-use crate::mesh::narrow;
-use crate::scene::{Material, Object, Scene};
+use crate::mesh::{narrow, widen};
+use crate::scene::{Camera, Material, Object, Scene};
 use crate::technique::{
     Frame, Outputs, ParamInfo, Params, TechniqueError, TextureSource, VisibilityOutput,
 };
@@ -178,22 +187,22 @@ struct SurfaceDraw<'a> {
 /// All objects of a scene, ready to draw in any pass.
 pub(super) struct SceneDraws<'a> {
     scene: &'a Scene,
-    clip_from_world: ClipFromWorld,
+    view: View,
     surfaces: Vec<SurfaceDraw<'a>>,
     highlights: bool,
 }
 
 impl<'a> SceneDraws<'a> {
     pub(super) fn new(scene: &'a Scene, size: [u32; 2], params: &Params) -> Self {
-        let clip_from_world = clip_from_world(scene, size);
+        let view = View::new(&scene.camera, size);
         let drawn = scene
             .objects
             .iter()
             .filter(|o| !o.mesh.triangles().is_empty());
         Self {
             scene,
-            clip_from_world,
-            surfaces: drawn.map(|o| SurfaceDraw::new(scene, o)).collect(),
+            surfaces: drawn.map(|o| SurfaceDraw::new(scene, &view, o)).collect(),
+            view,
             highlights: params.get(SHADING.name) != "lambert",
         }
     }
@@ -207,7 +216,7 @@ impl<'a> SceneDraws<'a> {
             let [r, g, b] = [0, 1, 2].map(|i| ambient[i] * albedo[i]);
             s.draw(RenderPipeline {
                 label: "ambient".into(),
-                vertex: Points(self.clip_from_world).stage(),
+                vertex: Points(self.view.clip_from_world).stage(),
                 fragment: Some(Constant([r, g, b, 1.0]).stage()),
                 primitive: s.primitive.clone(),
                 depth_stencil: DepthStencilState::opaque(),
@@ -233,7 +242,7 @@ impl<'a> SceneDraws<'a> {
         let draw = |s: &SurfaceDraw<'_>| {
             s.draw(RenderPipeline {
                 label: label.to_owned(),
-                vertex: Surfaces(self.clip_from_world).stage(),
+                vertex: Surfaces(self.view.clip_from_world).stage(),
                 fragment: Some(self.lit_shader(&s.object.material, light)),
                 primitive: s.primitive.clone(),
                 depth_stencil: lit_state(test, s.object.receives),
@@ -253,7 +262,7 @@ impl<'a> SceneDraws<'a> {
         let coloured = |c: [f32; 3]| [0, 1, 2].map(|i| c[i] * light.colour[i]);
         let lambert = Lambert {
             diffuse: coloured(material.albedo),
-            light: homogeneous(light.hard()),
+            light: self.view.light(light.hard()),
         };
         if !self.highlights || material.specular == [0.0; 3] {
             return lambert.stage();
@@ -262,17 +271,19 @@ impl<'a> SceneDraws<'a> {
             lambert,
             specular: coloured(material.specular),
             shininess: material.shininess,
-            eye: narrow(self.scene.camera.eye),
+            eye: narrow(self.scene.camera.eye - self.view.origin),
         };
         phong.stage()
     }
 }
 
 impl<'a> SurfaceDraw<'a> {
-    fn new(scene: &Scene, object: &'a Object) -> Self {
+    fn new(scene: &Scene, view: &View, object: &'a Object) -> Self {
         let shading = object.mesh.shading_vertices();
         let rows = shading.positions.iter().zip(&shading.normals);
-        let data = rows.flat_map(|(p, n)| p.iter().chain(n).copied()).collect();
+        let data = rows
+            .flat_map(|(p, n)| view.point(*p).into_iter().chain(*n))
+            .collect();
         let mut primitive = clamped();
         if crosses_near_plane(scene, object) {
             primitive.clip_planes.push([0.0, 0.0, 1.0, 0.0]);
@@ -312,24 +323,64 @@ pub(super) fn clamped() -> PrimitiveState {
     }
 }
 
-pub(super) fn clip_from_world(scene: &Scene, [width, height]: [u32; 2]) -> ClipFromWorld {
-    ClipFromWorld(
-        scene
-            .camera
-            .clip_from_world(f64::from(width) / f64::from(height)),
-    )
+/// The camera's transform, and the origin that it is relative to.
+pub(super) struct View {
+    pub(super) clip_from_world: ClipFromWorld,
+    /// In world space; world-space inputs of shaders are relative to it.
+    origin: DVec3,
+}
+
+impl View {
+    pub(super) fn new(camera: &Camera, [width, height]: [u32; 2]) -> Self {
+        let origin = origin(camera);
+        let moved = Camera {
+            eye: camera.eye - origin,
+            target: camera.target - origin,
+            ..*camera
+        };
+        let aspect = f64::from(width) / f64::from(height);
+        Self {
+            clip_from_world: ClipFromWorld(moved.clip_from_world(aspect)),
+            origin,
+        }
+    }
+
+    /// A world-space position relative to the origin.
+    pub(super) fn point(&self, p: [f32; 3]) -> [f32; 3] {
+        narrow(widen(p) - self.origin)
+    }
+
+    /// The light as a homogeneous point relative to the origin.
+    fn light(&self, light: HardLight) -> [f32; 4] {
+        let ([x, y, z], w) = match light {
+            HardLight::Point(p) => (narrow(p - self.origin), 1.0),
+            HardLight::Directional(towards) => (narrow(towards), 0.0),
+        };
+        [x, y, z, w]
+    }
+}
+
+/// Zero, or the eye rounded to a power of two near the distance it looks at,
+/// if the eye is far from zero by that measure.
+fn origin(camera: &Camera) -> DVec3 {
+    let distance = (camera.target - camera.eye).length();
+    if camera.eye.length() < 64.0 * distance {
+        return DVec3::ZERO;
+    }
+    let mut step = 1.0;
+    while step > distance {
+        step /= 2.0;
+    }
+    while step * 2.0 <= distance {
+        step *= 2.0;
+    }
+    (camera.eye / step).round() * step
 }
 
 pub(super) fn index_buffer(triangles: &[[u32; 3]]) -> Arc<IndexBuffer> {
     Arc::new(IndexBuffer::new(
         triangles.iter().flatten().copied().collect(),
     ))
-}
-
-fn homogeneous(light: HardLight) -> [f32; 4] {
-    let (HardLight::Point(v) | HardLight::Directional(v)) = light;
-    let [x, y, z] = narrow(v);
-    [x, y, z, if light.is_directional() { 0.0 } else { 1.0 }]
 }
 
 fn lit_state(test: LitTest, receives: bool) -> DepthStencilState {

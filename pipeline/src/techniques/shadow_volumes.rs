@@ -19,7 +19,7 @@ use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline, VertexBuffer};
 use gnomon_shaders::transform::HomogeneousPoints;
 
 use super::near_pyramid::{NearPyramid, outside_view};
-use super::passes::{self, LitTest, SceneDraws, Targets};
+use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use crate::caster::{Caster, CasterPolicy, UnknownPolicy};
 use crate::scene::{Object, Scene};
 use crate::technique::{
@@ -195,6 +195,7 @@ impl<'a> Casters<'a> {
         method: VolumeMethod,
         size: [u32; 2],
     ) -> Draw {
+        let view = View::new(&self.scene.camera, size);
         let depth_pass = method == VolumeMethod::DepthPass;
         let (depth_stencil, triangles) = if depth_pass {
             (DepthStencilState::z_pass_volumes(), volume.sides())
@@ -207,14 +208,23 @@ impl<'a> Casters<'a> {
             } else {
                 "z-fail".into()
             },
-            vertex: HomogeneousPoints(passes::clip_from_world(self.scene, size)).stage(),
+            vertex: HomogeneousPoints(view.clip_from_world).stage(),
             fragment: None,
             primitive: passes::clamped(),
             depth_stencil,
             color_targets: Vec::new(),
         };
+        // Points move with the origin, directions stay.
+        let moved = |&[x, y, z, w]: &[f32; 4]| {
+            let [x, y, z] = if w == 0.0 {
+                [x, y, z]
+            } else {
+                view.point([x, y, z])
+            };
+            [x, y, z, w]
+        };
         let vertices = VertexBuffer {
-            data: volume.positions().iter().flatten().copied().collect(),
+            data: volume.positions().iter().flat_map(moved).collect(),
             stride: 4,
         };
         let indices = passes::index_buffer(triangles);

@@ -1,0 +1,387 @@
+//! Shadow volumes on the emulated GPU, against each other and against the f64
+//! truth: same bits under z-pass and z-fail, right counts at every pixel that
+//! is not near an edge, invisible skipping.
+
+use std::path::PathBuf;
+
+use gnomon_pipeline::mesh::Shading;
+use gnomon_pipeline::obj;
+use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth};
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{Scene, builtin, frame_model};
+use gnomon_pipeline::technique::{self, Params, VolumeMethod};
+use gnomon_raster::GpuConfig;
+
+const SIZE: [u32; 2] = [160, 128];
+
+/// Scenes in which some caster shadows the eye.
+const EYE_IN_SHADOW: [&str; 2] = ["adversarial", "adversarial-eye-in-shadow"];
+
+fn draw_sized(scene: &Scene, name: &str, params: &[&str], size: [u32; 2]) -> Rendered {
+    let technique = technique::find(name).unwrap();
+    let params = Params::parse(technique, params).unwrap();
+    let gpu = GpuConfig {
+        threads: 2,
+        ..GpuConfig::default()
+    };
+    render(
+        scene,
+        technique,
+        &params,
+        &RenderSettings {
+            size,
+            gpu,
+            repeat: 1,
+        },
+    )
+    .unwrap()
+}
+
+fn draw(scene: &Scene, params: &[&str]) -> Rendered {
+    draw_sized(scene, "shadow-volumes", params, SIZE)
+}
+
+fn names() -> impl Iterator<Item = &'static str> {
+    builtin::SCENES.iter().map(|s| s.name)
+}
+
+/// Interior pixels, those of them in shadow, and those whose count differs.
+#[derive(Debug, Default)]
+struct Compared {
+    interior: usize,
+    shadowed: usize,
+    differing: Vec<(usize, u8, u32)>,
+}
+
+/// The stencil against the truth's counts modulo 256.
+fn against_truth(scene: &Scene, drawn: &Rendered) -> Compared {
+    let truth = HardTruth::of_scene(scene, 0, drawn.size, EdgeTolerance::HALF_PIXEL_AND_DEPTH);
+    let mut compared = Compared::default();
+    for (i, pixel) in truth.pixels.iter().enumerate() {
+        if !pixel.interior {
+            continue;
+        }
+        if pixel.centre.hit.is_none() {
+            assert!(drawn.visibility[i].is_nan(), "background at {i}");
+            continue;
+        }
+        compared.interior += 1;
+        compared.shadowed += usize::from(pixel.centre.shadow_count > 0);
+        if u32::from(drawn.stencil[i]) != pixel.centre.shadow_count % 256 {
+            compared
+                .differing
+                .push((i, drawn.stencil[i], pixel.centre.shadow_count));
+        }
+    }
+    compared
+}
+
+#[test]
+fn z_pass_and_z_fail_agree_where_the_eye_is_outside() {
+    for name in names().filter(|n| !EYE_IN_SHADOW.contains(n)) {
+        let scene = builtin::build(name).unwrap();
+        let [zpass, zfail] = ["method=zpass", "method=zfail"].map(|m| draw(&scene, &[m]));
+        assert!(
+            zpass.stencil == zfail.stencil,
+            "{name}: {} differ",
+            differences(&zpass.stencil, &zfail.stencil)
+        );
+        assert!(zpass.srgb == zfail.srgb, "{name}");
+        assert!(zfail.stencil.iter().any(|s| *s != 0), "{name}: no shadow");
+    }
+}
+
+fn differences(a: &[u8], b: &[u8]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
+#[test]
+fn z_fail_counts_what_the_truth_counts_in_every_scene() {
+    for name in names() {
+        let scene = builtin::build(name).unwrap();
+        let compared = against_truth(&scene, &draw(&scene, &["method=zfail"]));
+        eprintln!(
+            "{name}: {} interior, {} in shadow",
+            compared.interior, compared.shadowed
+        );
+        assert!(
+            compared.differing.is_empty(),
+            "{name}: {:?}",
+            compared.differing
+        );
+        assert!(
+            compared.interior > 1000 && compared.shadowed > 20,
+            "{name}: {compared:?}"
+        );
+    }
+}
+
+#[test]
+fn the_automatic_choice_is_right_and_z_pass_is_not_when_the_eye_is_in_shadow() {
+    for name in EYE_IN_SHADOW {
+        let scene = builtin::build(name).unwrap();
+        let [auto, zfail] = ["method=auto", "method=zfail"].map(|m| draw(&scene, &[m]));
+        assert!(auto.stencil == zfail.stencil, "{name}");
+        let methods: Vec<_> = auto.casters.iter().map(|c| c.method).collect();
+        assert!(
+            methods.contains(&VolumeMethod::DepthFail)
+                && methods.contains(&VolumeMethod::DepthPass),
+            "{name}"
+        );
+        // Negative control.
+        let wrong = against_truth(&scene, &draw(&scene, &["method=zpass"]));
+        assert!(
+            wrong.differing.len() > wrong.interior / 2,
+            "{name}: {}",
+            wrong.differing.len()
+        );
+    }
+}
+
+#[test]
+fn the_automatic_choice_gives_the_bits_of_z_fail() {
+    for name in names() {
+        let scene = builtin::build(name).unwrap();
+        let [auto, zfail] = ["method=auto", "method=zfail"].map(|m| draw(&scene, &[m]));
+        assert!(
+            auto.stencil == zfail.stencil && auto.srgb == zfail.srgb,
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn skipping_is_invisible() {
+    let mut skipped = 0;
+    for name in names() {
+        let mut scene = builtin::build(name).unwrap();
+        // Look aside, so that some casters leave the view.
+        for turn in [0.0, 1.0] {
+            let camera = &mut scene.camera;
+            let [right, ..] = camera.basis();
+            camera.target += right * (turn * (camera.target - camera.eye).length());
+            let on = draw(&scene, &["skip=on"]);
+            let off = draw(&scene, &["skip=off"]);
+            assert!(
+                on.stencil == off.stencil && on.srgb == off.srgb,
+                "{name}, turned {turn}"
+            );
+            assert!(
+                off.casters
+                    .iter()
+                    .all(|c| c.method != VolumeMethod::Skipped)
+            );
+            skipped += on
+                .casters
+                .iter()
+                .filter(|c| c.method == VolumeMethod::Skipped)
+                .count();
+        }
+    }
+    assert!(skipped > 3, "only {skipped} casters were ever skipped");
+}
+
+#[test]
+fn no_pixel_is_brighter_than_without_shadows() {
+    for name in names() {
+        let scene = builtin::build(name).unwrap();
+        let lit = draw_sized(&scene, "unshadowed", &[], SIZE);
+        let shadowed = draw(&scene, &[]);
+        let pixels = lit.srgb.iter().zip(&shadowed.srgb);
+        assert!(
+            pixels
+                .clone()
+                .all(|(l, s)| l.iter().zip(s).all(|(l, s)| l >= s)),
+            "{name}"
+        );
+        assert!(
+            pixels.clone().any(|(l, s)| l != s),
+            "{name}: no shadow changes anything"
+        );
+        for (i, (l, s)) in pixels.enumerate() {
+            let visibility = shadowed.visibility[i];
+            assert_eq!(visibility.is_nan(), lit.visibility[i].is_nan());
+            if visibility != 0.0 {
+                assert_eq!(l, s, "{name}: pixel {i} is visible from the light");
+            }
+        }
+    }
+}
+
+/// Fragments of the stencil pass, pixels with a count, and the largest count,
+/// at 512x512. The triangles are the peers' own numbers.
+#[test]
+fn peer_scenes_do_the_peers_work() {
+    let expected = [
+        ("peer-a", 388, 185_528, 22_451, 1),
+        ("peer-b", 37_508, 1_324_358, 49_993, 3),
+        ("peer-c", 29_512, 3_135_528, 40_116, 22),
+    ];
+    for (name, triangles, fragments, shadowed, most) in expected {
+        let scene = builtin::build(name).unwrap();
+        let drawn = draw_sized(
+            &scene,
+            "shadow-volumes",
+            &["method=zfail", "color-format=rgba8"],
+            [512; 2],
+        );
+        let labels: Vec<&str> = drawn
+            .report
+            .passes
+            .iter()
+            .map(|p| p.label.as_str())
+            .collect();
+        assert_eq!(labels, ["ambient", "volumes", "lit"]);
+        let counted = drawn.report.passes[1].totals();
+        assert_eq!(counted.primitives.input, triangles, "{name}");
+        assert_eq!(counted.fragments.generated, fragments, "{name}");
+        assert_eq!(
+            drawn.stencil.iter().filter(|s| **s != 0).count(),
+            shadowed,
+            "{name}"
+        );
+        assert_eq!(drawn.stencil.iter().max(), Some(&most), "{name}");
+    }
+}
+
+#[test]
+fn several_lights_add_up_and_the_first_gives_visibility() {
+    let mut scene = builtin::build("columns").unwrap();
+    let mut second = scene.lights[0].clone();
+    second.shape = gnomon_pipeline::light::LightShape::Directional {
+        towards: glam::DVec3::new(-0.6, 1.0, 0.4),
+    };
+    second.colour = [0.3, 0.2, 0.4];
+    scene.lights.push(second);
+    let both = draw(&scene, &[]);
+    let [first, other] = ["light=0", "light=1"].map(|l| draw(&scene, &[l]));
+    assert!(both.stencil == first.stencil && both.visibility_hash() == first.visibility_hash());
+    assert!(first.stencil != other.stencil);
+    for (i, both) in both.srgb.iter().enumerate() {
+        for c in 0..3 {
+            assert!(
+                both[c] >= first.srgb[i][c] && both[c] >= other.srgb[i][c],
+                "pixel {i}"
+            );
+        }
+    }
+    scene.lights.remove(0);
+    assert!(
+        against_truth(&scene, &other).differing.is_empty(),
+        "directional light"
+    );
+}
+
+#[test]
+fn objects_that_take_no_shadow_are_lit() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    scene.objects[0].receives = false;
+    let drawn = draw(&scene, &[]);
+    let lit = draw_sized(&scene, "unshadowed", &[], SIZE);
+    let floor_only = draw_sized(
+        &Scene {
+            objects: vec![scene.objects[0].clone()],
+            ..scene.clone()
+        },
+        "unshadowed",
+        &[],
+        SIZE,
+    );
+    let mut floor = 0;
+    for (i, depth) in drawn.depth.iter().enumerate() {
+        if *depth == floor_only.depth[i] && *depth < 1.0 {
+            floor += 1;
+            assert_eq!(
+                (drawn.srgb[i], drawn.visibility[i]),
+                (lit.srgb[i], 1.0),
+                "pixel {i}"
+            );
+        }
+    }
+    assert!(floor > 1000);
+}
+
+/// A wall through the near plane: its cap keeps the wall's depth, so the lit
+/// side stays lit, and nothing nearer than the near plane is seen.
+#[test]
+fn casters_that_cross_the_near_plane_keep_their_caps_to_the_bit() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    let [_, _, forward] = scene.camera.basis();
+    let eye = scene.camera.eye;
+    let slab = gnomon_pipeline::shape::cuboid(
+        eye + forward * 2.0 - glam::DVec3::Y * 0.4,
+        glam::DVec3::new(0.3, 0.3, 6.0),
+    );
+    let mut object = scene.objects[1].clone();
+    object.name = "slab".into();
+    object.mesh = std::sync::Arc::new(slab.into_mesh(Shading::Flat).unwrap());
+    scene.objects.push(object);
+    let zfail = draw(&scene, &["method=zfail"]);
+    let compared = against_truth(&scene, &zfail);
+    assert!(compared.differing.is_empty(), "{:?}", compared.differing);
+    assert!(draw(&scene, &[]).stencil == zfail.stencil);
+}
+
+/// `$GNOMON_DATA`, or `shared/data` beside the workspace.
+fn mesh_folder() -> Option<PathBuf> {
+    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    let folder = std::env::var_os("GNOMON_DATA")
+        .map_or_else(beside, PathBuf::from)
+        .join("meshes");
+    folder.exists().then_some(folder)
+}
+
+/// With float depth every interior pixel equals the truth. D24 limits the slope
+/// of needle-thin triangles seen edge-on, which the counters tell: each may
+/// spoil a pixel.
+fn check_models(files: &[&str], size: [u32; 2]) {
+    let Some(folder) = mesh_folder() else {
+        eprintln!("no data folder: nothing checked");
+        return;
+    };
+    for file in files {
+        let mesh = obj::load(&folder.join(file), Shading::Smooth).unwrap().mesh;
+        let scene = frame_model(file, &mesh);
+        for format in ["depth-format=d32f", "depth-format=d24"] {
+            let of = |m: &str| draw_sized(&scene, "shadow-volumes", &[m, format], size);
+            let [zfail, zpass] = ["method=zfail", "method=zpass"].map(of);
+            let compared = against_truth(&scene, &zfail);
+            let differ = compared.differing.len() as u64;
+            let passes = &zfail.report.passes;
+            let limited = passes
+                .iter()
+                .map(|p| p.totals().primitives.depth_slope_limited);
+            let limited: u64 = limited.sum();
+            eprintln!(
+                "{file} {format}: {} interior, {} in shadow, {limited} slopes limited, {:?}",
+                compared.interior, compared.shadowed, compared.differing
+            );
+            assert!(differ <= limited, "{file}: {:?}", compared.differing);
+            assert!(compared.shadowed > 300, "{file}");
+            let methods_differ = differences(&zpass.stencil, &zfail.stencil);
+            assert_eq!(methods_differ, 0, "{file}: z-pass and z-fail");
+        }
+    }
+}
+
+#[test]
+fn real_meshes_equal_the_truth() {
+    check_models(
+        &[
+            "bunny_5k.obj",
+            "buddha_10k.obj",
+            "armadillo_10k.obj",
+            "dragon_10k.obj",
+        ],
+        [192, 160],
+    );
+}
+
+#[test]
+#[ignore = "half a minute; run in release"]
+fn full_meshes_equal_the_truth() {
+    check_models(
+        &["bunny.obj", "buddha_70k.obj", "armadillo.obj", "dragon.obj"],
+        [512, 384],
+    );
+}

@@ -206,6 +206,11 @@ pub(crate) struct AccessSizes {
 /// Bytes of a zmin/zmax entry.
 pub(crate) const HIZ_BYTES: u64 = 8;
 
+/// Bytes of the word that holds depth and stencil together.
+pub(crate) fn packed_word_bytes(f: Format) -> u64 {
+    if f == Format::Depth32FloatStencil8 { 8 } else { 4 }
+}
+
 impl Counters {
     /// Adds another draw's.
     pub fn add(&mut self, o: &Self) {
@@ -243,7 +248,7 @@ impl Counters {
         t.z = Traffic::of(a.z_read, a.z_write, depth_bytes);
         t.stencil = Traffic::of(a.stencil_read, a.stencil_write, 1);
         t.hiz = Traffic::of(a.hiz_read, a.hiz_write, HIZ_BYTES);
-        let word = if sizes.depth == Some(Format::Depth32FloatStencil8) { 8 } else { 4 };
+        let word = sizes.depth.map_or(0, packed_word_bytes);
         t.packed_depth_stencil = Traffic::of(a.z_read + a.stencil_read, a.z_write + a.stencil_write, word);
         for (i, f) in sizes.color.iter().enumerate() {
             t.color[i] = Traffic::of(a.color_read[i], a.color_write[i], f.map_or(0, Format::bytes));

@@ -110,8 +110,12 @@ fn draw_config<'a>(
         depth_write: attached && ds.depth.write,
         bounds: ds.depth.bounds.map(|b| b.map(|v| encode_depth(encoding, v))),
         depth_range: [ends[0].min(ends[1]), ends[0].max(ends[1])],
+        depth_reversed: ends[0] > ends[1],
         depth_clamp: draw.pipeline.primitive.depth_clamp,
         hiz: gpu.config.skip && depth_tested && ds.depth.bounds.is_none() && !outputs.depth,
+        plain: draw.pipeline.primitive.depth_clamp
+            && draw.pipeline.primitive.clip_planes.is_empty()
+            && ds.depth.bounds.is_none(),
         needs_depth: depth_tested
             || (attached && ds.depth.write)
             || shader.is_some()

@@ -1,11 +1,11 @@
 //! Lending attachments to a pass, and cutting them into tiles.
 
 use crate::command::{LoadOp, RenderPass, StoreOp};
-use crate::counters::{AccessSizes, ClientTraffic, Traffic};
+use crate::counters::{AccessSizes, ClientTraffic, Traffic, packed_word_bytes};
 use crate::format::Format;
 use crate::gpu::Gpu;
 use crate::texture::{
-    Block, Block4, ColorBlocks, DepthPlane, HizEntry, Layout, Plane, Subresource, TextureId, encode, encode_depth,
+    Block, Block4, ColorBlocks, DepthPlane, Layout, Plane, Subresource, TextureId, encode, encode_depth,
 };
 use crate::tile::{ColorTile, DepthTile, TileTarget};
 
@@ -90,8 +90,10 @@ fn cut_color(blocks: &mut ColorBlocks, n: usize) -> Vec<ColorTile<'_>> {
 }
 
 fn cut_depth(d: &mut DepthPlane, n: usize) -> Vec<DepthTile<'_>> {
-    let parts = d.depth.chunks_mut(n).zip(d.stencil.chunks_mut(n)).zip(d.hiz.chunks_mut(n));
-    parts.map(|((depth, stencil), hiz)| DepthTile { depth, stencil, hiz }).collect()
+    let blocks = d.depth.chunks_mut(n).zip(d.stencil.chunks_mut(n));
+    let hiz = d.hiz.min.chunks_mut(n).zip(d.hiz.max.chunks_mut(n));
+    let tile = |((depth, stencil), (hiz_min, hiz_max))| DepthTile { depth, stencil, hiz_min, hiz_max };
+    blocks.zip(hiz).map(tile).collect()
 }
 
 /// What a pass does to its attachments at one of its ends.
@@ -153,6 +155,10 @@ pub(super) fn clear_traffic(pass: &RenderPass, lent: &Lent) -> ClientTraffic {
     if let (Some(a), Some(f)) = (&pass.depth_stencil, lent.sizes.depth) {
         t.z = writes(matches!(a.depth_load, LoadOp::Clear(_)), f.bytes());
         t.stencil = writes(matches!(a.stencil_load, LoadOp::Clear(_)), 1);
+        let words = t.z.write_accesses + t.stencil.write_accesses;
+        let word = packed_word_bytes(f);
+        t.packed_depth_stencil =
+            Traffic { write_accesses: words, write_bytes: words * word, ..Traffic::default() };
     }
     t
 }
@@ -168,7 +174,8 @@ impl Fill {
         let Some(d) = &mut tile.depth else { return };
         if let Some(v) = self.depth {
             d.depth.fill(Block([v; 64]));
-            d.hiz.fill(HizEntry { min: v as i32, max: v as i32 });
+            d.hiz_min.fill(v as i32);
+            d.hiz_max.fill(v as i32);
         }
         if let Some(v) = self.stencil {
             d.stencil.fill(Block([v; 64]));

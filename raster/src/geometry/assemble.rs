@@ -13,6 +13,9 @@ use crate::state::PrimitiveTopology;
 /// Set in a vertex reference: it counts into the chunk's own vertices.
 pub(crate) const OWN_VERTEX: u32 = 1 << 31;
 
+/// Largest magnitude of a snapped coordinate: 2²² = 16384 pixels.
+const COORDINATE_LIMIT: f32 = 4_194_304.0;
+
 /// What a chunk is made from.
 pub(crate) struct ChunkInput<'a> {
     pub(crate) state: &'a GeometryState,
@@ -81,6 +84,11 @@ pub(crate) fn process_chunk(level: SimdLevel, input: &ChunkInput<'_>, grid: &Til
     let mut chunk = a.chunk;
     chunk.bins = Bins::build(level, &chunk.triangles, input.state.rect, grid);
     chunk
+}
+
+/// Whether snapped coordinates and depth are in the range of set-up.
+fn is_usable(s: &ScreenVertex) -> bool {
+    s.x.abs() <= COORDINATE_LIMIT && s.y.abs() <= COORDINATE_LIMIT && s.z.is_finite()
 }
 
 struct Assembler<'a> {
@@ -154,15 +162,7 @@ impl Assembler<'_> {
         } else {
             let first = self.clip_vertex(v[0]);
             poly.iter_mut().for_each(|c| self.keep_flat(c, &first));
-            let fan: Vec<u32> = poly.iter().map(|c| self.push_clipped(c)).collect();
-            for k in 1..fan.len() - 1 {
-                self.push(Piece {
-                    v: [fan[0], fan[k], fan[k + 1]],
-                    primitive: self.input.first_primitive + p,
-                    piece: k as u16 - 1,
-                    widened: false,
-                });
-            }
+            self.push_fan(p, &poly);
         }
         self.poly = poly;
     }
@@ -174,8 +174,23 @@ impl Assembler<'_> {
         }
     }
 
-    fn push_clipped(&mut self, c: &ClipVertex) -> u32 {
-        self.push_own(c, project_one(self.input.state, &c.position))
+    /// The fan of a clipped polygon, unless rounding has thrown a vertex out of
+    /// the range that set-up can take (rules §3.2).
+    fn push_fan(&mut self, p: u32, poly: &[ClipVertex]) {
+        let screen: Vec<ScreenVertex> = poly.iter().map(|c| project_one(self.input.state, &c.position)).collect();
+        if !screen.iter().all(is_usable) {
+            self.chunk.counters.non_finite += 1;
+            return;
+        }
+        let fan: Vec<u32> = poly.iter().zip(screen).map(|(c, s)| self.push_own(c, s)).collect();
+        for k in 1..fan.len() - 1 {
+            self.push(Piece {
+                v: [fan[0], fan[k], fan[k + 1]],
+                primitive: self.input.first_primitive + p,
+                piece: k as u16 - 1,
+                widened: false,
+            });
+        }
     }
 
     fn push_own(&mut self, c: &ClipVertex, screen: ScreenVertex) -> u32 {
@@ -203,6 +218,10 @@ impl Assembler<'_> {
         };
         ends.iter_mut().for_each(|e| self.keep_flat(e, &first));
         let screen = ends.map(|e| project_one(self.input.state, &e.position));
+        if !screen.iter().all(is_usable) {
+            self.chunk.counters.non_finite += 1;
+            return;
+        }
         match widen::line_corners(screen[0], screen[1], self.input.state.line_width) {
             Some(corners) => self.push_quad(p, corners, [&ends[0], &ends[1], &ends[1], &ends[0]]),
             None => self.chunk.counters.degenerate += 1,

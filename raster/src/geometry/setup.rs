@@ -55,12 +55,12 @@ pub(crate) struct Triangle {
 const _: () = assert!(core::mem::size_of::<Triangle>() == 128);
 
 impl Triangle {
-    /// Depth at the origin pixel of the block at pixel (x, y), in doubles.
+    /// Depth at the origin pixel of the block at pixel (x, y), in doubles, without bias.
     #[inline(always)]
     pub(crate) fn depth_base(&self, x: u32, y: u32) -> f64 {
         let dx = (f64::from(x) + 0.5) - f64::from(self.x) * (1.0 / 256.0);
         let dy = (f64::from(y) + 0.5) - f64::from(self.y) * (1.0 / 256.0);
-        (f64::from(self.z) + (self.zx * dx + self.zy * dy)) + self.bias
+        f64::from(self.z) + (self.zx * dx + self.zy * dy)
     }
 }
 

@@ -33,7 +33,7 @@ pub(crate) const PACKETS: usize = 4;
 
 /// `base + gx·ix + gy·iy` of each varying over one 8×8 block; index
 /// [`MAX_VARYINGS`] is 1/w.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct VaryingPlanes {
     pub(crate) base: [f32; MAX_VARYINGS + 1],
     pub(crate) gx: [f32; MAX_VARYINGS + 1],
@@ -74,6 +74,8 @@ pub(crate) struct ShadeBlock<'a> {
     /// Bit `8·row + column`: the fragment is to be shaded.
     pub(crate) live: u64,
     pub(crate) planes: &'a VaryingPlanes,
+    /// How many of the planes mean something.
+    pub(crate) varyings: usize,
     /// Depth of the block's fragments.
     pub(crate) depth: ShaderDepth,
     pub(crate) front_facing: bool,
@@ -90,6 +92,7 @@ pub struct Fragment<'a, L: Lanes> {
     pub(super) y: u32,
     pub(super) live: u16,
     pub(super) planes: &'a VaryingPlanes,
+    pub(super) varyings: usize,
     pub(super) w: F32<L>,
     pub(super) depth: ShaderDepth,
     pub(super) front_facing: bool,
@@ -115,6 +118,7 @@ impl<'a, L: Lanes> Fragment<'a, L> {
             y: b.y + 2 * packet as u32,
             live,
             planes: b.planes,
+            varyings: b.varyings,
             w: F32::splat(l, 1.0),
             depth: b.depth,
             front_facing: b.front_facing,
@@ -147,7 +151,7 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     /// Varying `i`, interpolated as the vertex shader declared; 0 beyond.
     #[inline(always)]
     pub fn varying(&self, i: usize) -> F32<L> {
-        if i >= MAX_VARYINGS {
+        if i >= self.varyings {
             return F32::splat(self.l, 0.0);
         }
         let v = self.plane(i);

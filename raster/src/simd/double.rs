@@ -39,6 +39,11 @@ impl<L: Lanes> F64<L> {
     }
 
     #[inline(always)]
+    pub(crate) fn from_array(l: L, a: &[f64; LANES]) -> Self {
+        Self { lo: f64x8::from_slice(l.isa(), &a[..8]), hi: f64x8::from_slice(l.isa(), &a[8..]), l }
+    }
+
+    #[inline(always)]
     pub(crate) fn to_f32(self) -> F32<L> {
         F32::new(self.l, self.l.isa().narrow_f64x8(self.lo, self.hi))
     }

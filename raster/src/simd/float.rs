@@ -199,6 +199,16 @@ impl<L: Lanes> Mask<L> {
     }
 }
 
+impl<L: Lanes> F32<L> {
+    /// The larger of the operands' bits as unsigned integers: at most that of
+    /// 1.0 exactly where all operands lie in 0..=1 and none is −0 or NaN.
+    #[inline(always)]
+    pub(crate) fn all_in_unit(v: &[Self; 4]) -> Mask<L> {
+        let largest = v[0].to_bits().max(v[1].to_bits()).max(v[2].to_bits().max(v[3].to_bits()));
+        largest.le(U32::splat(v[0].l, 1.0f32.to_bits()))
+    }
+}
+
 macro_rules! float_op {
     ($trait:ident, $method:ident) => {
         impl<L: Lanes> $trait for F32<L> {

@@ -31,6 +31,11 @@ impl SimdLevel {
     pub fn detect() -> Self {
         #[allow(clippy::disallowed_methods, reason = "the one place that asks the CPU")]
         let level = Level::new();
+        // SSE4.2 alone gains too little over SSE2 to be compiled as a level of its own.
+        #[cfg(target_arch = "x86_64")]
+        if let (Level::Sse4_2(_), Some(sse2)) = (level, level.as_sse2()) {
+            return Self { level: Level::Sse2(sse2) };
+        }
         Self { level }
     }
 
@@ -48,7 +53,6 @@ impl SimdLevel {
         #[cfg(target_arch = "x86_64")]
         {
             levels.extend(best.as_sse2().map(|t| Self { level: Level::Sse2(t) }));
-            levels.extend(best.as_sse4_2().map(|t| Self { level: Level::Sse4_2(t) }));
             levels.extend(best.as_avx2().map(|t| Self { level: Level::Avx2(t) }));
             levels.extend(best.as_avx512().map(|t| Self { level: Level::Avx512(t) }));
         }
@@ -58,15 +62,13 @@ impl SimdLevel {
         levels
     }
 
-    /// The level's stable name: `scalar`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon`.
+    /// The level's stable name: `scalar`, `sse2`, `avx2`, `avx512`, `neon`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.level {
             Level::Fallback(_) => "scalar",
             #[cfg(target_arch = "x86_64")]
             Level::Sse2(_) => "sse2",
-            #[cfg(target_arch = "x86_64")]
-            Level::Sse4_2(_) => "sse4.2",
             #[cfg(target_arch = "x86_64")]
             Level::Avx2(_) => "avx2",
             #[cfg(target_arch = "x86_64")]
@@ -94,11 +96,6 @@ macro_rules! with_lanes {
             fearless_simd::Level::Fallback($lanes) => $op,
             #[cfg(target_arch = "x86_64")]
             fearless_simd::Level::Sse2($lanes) => $lanes.vectorize(
-                #[inline(always)]
-                || $op,
-            ),
-            #[cfg(target_arch = "x86_64")]
-            fearless_simd::Level::Sse4_2($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,
             ),

@@ -85,7 +85,9 @@ fn spread(v: u32) -> u32 {
     (v | (v << 1)) & 0x55
 }
 
-fn unmorton(i: usize) -> (u32, u32) {
+/// The (x, y) of a Z-order index below 256.
+#[inline(always)]
+pub(crate) fn unmorton(i: usize) -> (u32, u32) {
     let mut x = 0;
     let mut y = 0;
     for b in 0..MAX_ORDER {

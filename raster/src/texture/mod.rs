@@ -6,6 +6,6 @@ mod resource;
 
 pub use layout::BLOCK;
 pub(crate) use layout::Layout;
-pub(crate) use plane::{Block, Block4, ColorBlocks, DepthPlane, HizEntry, Plane};
+pub(crate) use plane::{Block, Block4, ColorBlocks, DepthPlane, HIZ_STALE, Plane};
 pub(crate) use resource::{encode, encode_depth};
 pub use resource::{ColorTexel, Subresource, Texture, TextureDescriptor, TextureDimension, TextureId};

@@ -28,21 +28,16 @@ pub(crate) enum ColorBlocks {
     B32x4(Vec<Block4<u32>>),
 }
 
-/// Smallest and largest depth of the pixels of a block that lie in the image;
-/// `min > max` says that it must be found again before use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct HizEntry {
-    pub(crate) min: i32,
-    pub(crate) max: i32,
+/// Smallest and largest depth of the pixels of each block that lie in the image.
+/// `min > max` says that a block's must be found again before use.
+#[derive(Clone)]
+pub(crate) struct HizPlane {
+    pub(crate) min: Vec<i32>,
+    pub(crate) max: Vec<i32>,
 }
 
-impl HizEntry {
-    pub(crate) const STALE: Self = Self { min: 1, max: 0 };
-
-    pub(crate) fn is_stale(self) -> bool {
-        self.min > self.max
-    }
-}
+/// min and max of a block that must be found again.
+pub(crate) const HIZ_STALE: [i32; 2] = [1, 0];
 
 /// Depth and stencil of one subresource. Depth is kept as ordered non-negative
 /// integers: the D24 value, or the bits of a float in 0..=1.
@@ -50,7 +45,7 @@ impl HizEntry {
 pub(crate) struct DepthPlane {
     pub(crate) depth: Vec<Block<u32>>,
     pub(crate) stencil: Vec<Block<u8>>,
-    pub(crate) hiz: Vec<HizEntry>,
+    pub(crate) hiz: HizPlane,
 }
 
 /// One subresource.
@@ -70,7 +65,7 @@ impl Plane {
             Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => Self::Depth(DepthPlane {
                 depth: vec![Block([0; 64]); n],
                 stencil: vec![Block([0; 64]); n],
-                hiz: vec![HizEntry { min: 0, max: 0 }; n],
+                hiz: HizPlane { min: vec![0; n], max: vec![0; n] },
             }),
             Format::R8Unorm => Self::Color(ColorBlocks::B8(vec![Block([0; 64]); n])),
             Format::Rg8Unorm | Format::R16Sint | Format::R16Float => {

@@ -1,7 +1,7 @@
 //! Textures as the API shows them.
 
 use super::plane::{ColorBlocks, DepthPlane, Plane};
-use super::{HizEntry, Layout};
+use super::{HIZ_STALE, Layout};
 use crate::MAX_TEXTURE_SIZE;
 use crate::error::Error;
 use crate::format::{self, Format};
@@ -238,7 +238,7 @@ impl Texture {
             let (b, k) = l.locate(x, y);
             plane.depth[b].0[k] = encode_depth(f, depth[i]);
             plane.stencil[b].0[k] = stencil[i];
-            plane.hiz[b] = HizEntry::STALE;
+            [plane.hiz.min[b], plane.hiz.max[b]] = HIZ_STALE;
         }
         Ok(())
     }

@@ -1,17 +1,17 @@
-//! Fixed function on one block: zmin/zmax, bounds, stencil, depth, and what the
+//! Fixed function on blocks: zmin/zmax, bounds, stencil, depth, and what the
 //! shader and the output make of the rest (rules §7).
 
 use super::config::{DrawConfig, StencilFace};
-use super::depth::{self, Decision, DepthBlock};
-use super::target::TileTarget;
+use super::depth::{self, Decision, Decisions, DepthBlock, GroupDepth};
+use super::shade::VaryingCache;
+use super::target::{DepthTile, TileTarget};
 use super::{COUNT, ChunkRef, Recorder, TileStageCounters, output, shade, stencil};
 use crate::geometry::Triangle;
 use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput};
-use crate::simd::{Lanes, SimdLevel, outlined};
+use crate::simd::{I32, LANES, Lanes, SimdLevel, outlined};
 use crate::state::CompareFunction;
-use crate::texture::layout::morton;
-use crate::texture::{Block, HizEntry};
+use crate::texture::{Block, HIZ_STALE};
 
 /// What the triangles of one bin share.
 pub(super) struct Env<'a, 't> {
@@ -22,9 +22,10 @@ pub(super) struct Env<'a, 't> {
     pub(super) target: &'a mut TileTarget<'t>,
     pub(super) counters: &'a mut TileStageCounters,
     pub(super) outputs: &'a mut [PacketOutput; PACKETS],
+    pub(super) varyings: &'a mut VaryingCache,
 }
 
-/// One triangle in one block.
+/// One block of a tile.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     /// Index of the block in the tile's slices.
@@ -47,111 +48,315 @@ fn count(counter: &mut u64, mask: u64) {
     }
 }
 
-/// Runs the pixels of `covered` in block (bx, by) of the tile.
+/// zmin and zmax of the group's blocks of `alive`, and what they decide.
 #[inline(always)]
+pub(super) fn ask_group<L: Lanes, const D24: bool>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    first: usize,
+    alive: u16,
+    depth: &GroupDepth<L, D24>,
+) -> Decisions {
+    let [mut min, mut max] = load_group(l, env, first);
+    let stale = min.gt(max).bits() & alive;
+    if stale != 0 {
+        outlined(
+            l,
+            #[inline(always)]
+            || refresh(l, env, first, stale),
+        );
+        [min, max] = load_group(l, env, first);
+    }
+    depth::decide_group(env.config.compare, depth.span(), [min, max])
+}
+
+#[inline(always)]
+fn load_group<L: Lanes>(l: L, env: &Env<'_, '_>, first: usize) -> [I32<L>; 2] {
+    let d = env.target.depth.as_ref().expect("zmin/zmax only with depth");
+    match (d.hiz_min.get(first..first + LANES), d.hiz_max.get(first..first + LANES)) {
+        (Some(min), Some(max)) => [
+            I32::from_array(l, min.try_into().expect("16 entries")),
+            I32::from_array(l, max.try_into().expect("16 entries")),
+        ],
+        _ => {
+            // A tile or image of fewer than 16 blocks.
+            let (mut min, mut max) = ([0; LANES], [0; LANES]);
+            let n = d.hiz_min.len() - first;
+            min[..n].copy_from_slice(&d.hiz_min[first..]);
+            max[..n].copy_from_slice(&d.hiz_max[first..]);
+            [I32::from_array(l, &min), I32::from_array(l, &max)]
+        }
+    }
+}
+
+/// Finds zmin and zmax of the blocks of `stale` again.
+#[inline(always)]
+fn refresh<L: Lanes>(l: L, env: &mut Env<'_, '_>, first: usize, stale: u16) {
+    let (x, y) = (env.target.x, env.target.y);
+    let mut left = stale;
+    while left != 0 {
+        let index = first + left.trailing_zeros() as usize;
+        left &= left - 1;
+        let (bx, by) = crate::texture::layout::unmorton(index);
+        let inside = env.target.inside(x + 8 * bx, y + 8 * by);
+        let d = env.target.depth.as_mut().expect("zmin/zmax only with depth");
+        [d.hiz_min[index], d.hiz_max[index]] = depth::block_range(l, &d.depth[index], inside);
+    }
+}
+
+/// Runs those whole blocks of a group that need no look at their pixels, and
+/// gives them: thrown away by zmin/zmax, or decided with at most one stencil
+/// count to add.
+#[inline(always)]
+pub(super) fn run_group<L: Lanes>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    face: &StencilFace,
+    first: usize,
+    full: u16,
+    decided: &Decisions,
+) -> u16 {
+    let config = env.config;
+    let c = &mut *env.counters;
+    let mut done = 0;
+    if config.hiz && !face.acts_on_depth_failure() {
+        done = full & decided.fail;
+        if COUNT {
+            let n = u64::from(done.count_ones());
+            c.fragments.generated += 64 * n;
+            c.fragments.hiz_killed += 64 * n;
+            c.tiles.tested += n;
+            c.tiles.culled += n;
+            c.accesses.hiz_read += n;
+        }
+    }
+    if config.shader.is_some() || config.depth_write || !config.attached {
+        return done;
+    }
+    let Some([on_fail, on_pass]) = face.counts else { return done };
+    let (pass, fail) = match config.compare {
+        CompareFunction::Always => (full, 0),
+        CompareFunction::Never => (0, full),
+        _ => (full & decided.pass, full & decided.fail & !done),
+    };
+    let d = env.target.depth.as_mut().expect("attached");
+    for (blocks, step, failed) in [(pass, on_pass, false), (fail, on_fail, true)] {
+        if blocks == 0 {
+            continue;
+        }
+        if COUNT {
+            let n = u64::from(blocks.count_ones());
+            c.fragments.generated += 64 * n;
+            *(if failed { &mut c.fragments.depth_failed } else { &mut c.fragments.written }) += 64 * n;
+            if config.hiz {
+                c.tiles.tested += n;
+                c.tiles.accepted += n;
+                c.accesses.hiz_read += n;
+            }
+            if step != 0 {
+                c.accesses.stencil_read += 64 * n;
+                c.accesses.stencil_write += 64 * n;
+            }
+        }
+        if step != 0 {
+            stencil::add_to_blocks(l, d.stencil, first, blocks, step);
+        }
+    }
+    done | pass | fail
+}
+
+/// Runs the pixels of `covered` of one block; `decision` is what a group's
+/// zmin/zmax have said, if they were asked.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "one triangle in one block")]
 pub(super) fn run<L: Lanes, R: Recorder, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
     recorder: &mut R,
     t: &Triangle,
-    [bx, by]: [i32; 2],
+    place: Place,
+    plane: DepthBlock<D24>,
+    decision: Option<Decision>,
     covered: u64,
 ) {
-    if covered != 0 {
-        outlined(
-            l,
-            #[inline(always)]
-            || run_covered::<L, R, D24>(l, env, recorder, t, [bx, by], covered),
-        );
-    }
+    outlined(
+        l,
+        #[inline(always)]
+        || run_covered::<L, R, D24>(l, env, recorder, t, place, plane, decision, covered),
+    );
 }
 
 #[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "one triangle in one block")]
 fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
     recorder: &mut R,
     t: &Triangle,
-    [bx, by]: [i32; 2],
+    place: Place,
+    plane: DepthBlock<D24>,
+    decision: Option<Decision>,
     covered: u64,
 ) {
-    let place = Place {
-        index: morton(bx as u32, by as u32),
-        x: env.target.x + 8 * bx as u32,
-        y: env.target.y + 8 * by as u32,
-    };
     let config = env.config;
-    let plane = if config.needs_depth {
-        DepthBlock::<D24>::new(t, place.x, place.y, config.depth_range)
-    } else {
-        DepthBlock::<D24>::UNUSED
-    };
-    let mut mask = covered;
-    if !config.depth_clamp {
-        mask &= outlined(
+    let face = if t.front { &config.stencil[0] } else { &config.stencil[1] };
+    if !R::ON && config.plain && config.shader.is_none() && config.attached {
+        return outlined(
             l,
             #[inline(always)]
-            || plane.not_beyond_far(l),
+            || count_or_write(l, env, face, place, &plane, decision, covered),
         );
     }
-    if !config.clip_planes.is_empty() {
+    let mut mask = covered;
+    if !config.plain {
         mask &= outlined(
             l,
             #[inline(always)]
-            || shade::inside_clip_planes(l, env, t, place),
+            || visible::<L, D24>(l, env, t, place),
         );
     }
     if mask != 0 {
-        let access = fragments(l, env, t, place, plane, mask);
+        let access = fragments(l, env, t, face, place, plane, decision, mask);
         if R::ON {
             record(env, recorder, t, place, access);
         }
     }
 }
 
+/// Pixels on the right side of clip planes and of the far end.
 #[inline(always)]
+fn visible<L: Lanes, const D24: bool>(
+    l: L,
+    env: &Env<'_, '_>,
+    t: &Triangle,
+    place: Place,
+) -> u64 {
+    let c = env.config;
+    let near = if c.depth_clamp {
+        u64::MAX
+    } else {
+        DepthBlock::<D24>::not_beyond_far(l, t, place.x, place.y, c.depth_range, c.depth_reversed)
+    };
+    near & shade::inside_clip_planes(l, env, t, place)
+}
+
+/// A block of a draw that only tests depth, counts stencil and writes depth:
+/// shadow volumes and depth passes.
+#[inline(always)]
+fn count_or_write<L: Lanes, const D24: bool>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    face: &StencilFace,
+    place: Place,
+    plane: &DepthBlock<D24>,
+    decision: Option<Decision>,
+    mask: u64,
+) {
+    let config = env.config;
+    count(&mut env.counters.fragments.generated, mask);
+    let Some(decision) = consult(l, env, face, place, plane, decision, mask) else { return };
+    let c = &mut *env.counters;
+    let d = env.target.depth.as_mut().expect("attached");
+    let Some(steps) = face.counts else {
+        let mut access = BlockAccess::default();
+        let depths = Depths::Plane(*plane);
+        let passed = tests::<L, D24>(l, env, place, face, &depths, decision, mask, &mut access);
+        return count(&mut env.counters.fragments.written, passed);
+    };
+    let passed = match (config.compare, decision) {
+        (CompareFunction::Always, _) | (_, Decision::Pass) => mask,
+        (CompareFunction::Never, _) | (_, Decision::Fail) => 0,
+        _ => {
+            count(&mut c.accesses.z_read, mask);
+            compare_plane(l, config.compare, plane, &d.depth[place.index]) & mask
+        }
+    };
+    count(&mut c.fragments.written, passed);
+    count(&mut c.fragments.depth_failed, mask & !passed);
+    for (m, step) in [(mask & !passed, steps[0]), (passed, steps[1])] {
+        if step != 0 && m != 0 {
+            count(&mut c.accesses.stencil_read, m);
+            count(&mut c.accesses.stencil_write, m);
+            stencil::add(l, &mut d.stencil[place.index], m, step);
+        }
+    }
+    if config.depth_write && passed != 0 {
+        let inside = env.target.inside(place.x, place.y);
+        let d = env.target.depth.as_mut().expect("attached");
+        write_depth(l, config, env.counters, d, place.index, &Depths::Plane(*plane), inside, passed);
+    }
+}
+
+/// Asks zmin/zmax where the draw uses them; `None` where the block is thrown away.
+#[inline(always)]
+fn consult<L: Lanes, const D24: bool>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    face: &StencilFace,
+    place: Place,
+    plane: &DepthBlock<D24>,
+    decision: Option<Decision>,
+    mask: u64,
+) -> Option<Decision> {
+    if !env.config.hiz {
+        return Some(Decision::Unknown);
+    }
+    let decision = decision.unwrap_or_else(
+        #[inline(always)]
+        || ask_hiz(l, env, place, plane),
+    );
+    let c = &mut *env.counters;
+    if COUNT {
+        c.tiles.tested += 1;
+        c.accesses.hiz_read += 1;
+    }
+    if decision == Decision::Fail && !face.acts_on_depth_failure() {
+        if COUNT {
+            c.tiles.culled += 1;
+        }
+        count(&mut c.fragments.hiz_killed, mask);
+        return None;
+    }
+    if COUNT && decision != Decision::Unknown {
+        c.tiles.accepted += 1;
+    }
+    Some(decision)
+}
+
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "one triangle in one block")]
 fn fragments<L: Lanes, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
     t: &Triangle,
+    face: &StencilFace,
     place: Place,
     plane: DepthBlock<D24>,
+    decision: Option<Decision>,
     mask: u64,
 ) -> BlockAccess {
     let config = env.config;
-    let face = if t.front { &config.stencil[0] } else { &config.stencil[1] };
-    let mut access = BlockAccess { covered: mask, ..BlockAccess::default() };
+    let mut access = BlockAccess { covered: mask, hiz_read: config.hiz, ..BlockAccess::default() };
     count(&mut env.counters.fragments.generated, mask);
-
-    let mut decision = Decision::Unknown;
-    if config.hiz {
-        decision = ask_hiz(l, env, place, &plane);
-        access.hiz_read = true;
-        if decision == Decision::Fail && !face.acts_on_depth_failure() {
-            if COUNT {
-                env.counters.tiles.culled += 1;
-            }
-            count(&mut env.counters.fragments.hiz_killed, mask);
-            return access;
-        }
-        if COUNT && decision != Decision::Unknown {
-            env.counters.tiles.accepted += 1;
-        }
-    }
+    let Some(decision) = consult(l, env, face, place, &plane, decision, mask) else { return access };
     let late = config.is_late(face);
     let mut alive = mask;
     let mut depths = Depths::Plane(plane);
     if late {
-        alive = shaded::<D24>(env, t, place, &plane, alive);
+        alive = shaded::<L, D24>(l, env, t, place, &plane, alive);
         if config.writes_shader_depth {
             depths = Depths::Shader(shade::shader_depths::<D24>(env, alive));
         }
     }
     if config.attached {
-        alive = tests::<L, D24>(l, env, place, face, &depths, decision, alive, &mut access);
+        alive = outlined(
+            l,
+            #[inline(always)]
+            || tests::<L, D24>(l, env, place, face, &depths, decision, alive, &mut access),
+        );
     }
     if !late && config.shader.is_some() {
-        alive = shaded::<D24>(env, t, place, &plane, alive);
+        alive = shaded::<L, D24>(l, env, t, place, &plane, alive);
     }
     count(&mut env.counters.fragments.written, alive);
     if alive != 0 && config.shader.is_some() {
@@ -162,7 +367,8 @@ fn fragments<L: Lanes, const D24: bool>(
 
 /// Runs the shader on `alive`; gives what it did not discard.
 #[inline(always)]
-fn shaded<const D24: bool>(
+fn shaded<L: Lanes, const D24: bool>(
+    l: L,
     env: &mut Env<'_, '_>,
     t: &Triangle,
     place: Place,
@@ -172,10 +378,8 @@ fn shaded<const D24: bool>(
     if alive == 0 {
         return 0;
     }
-    if COUNT {
-        env.counters.invocations += u64::from(alive.count_ones());
-    }
-    let discarded = shade::run::<D24>(env, t, place, plane, alive);
+    count(&mut env.counters.invocations, alive);
+    let discarded = shade::run::<L, D24>(l, env, t, place, plane, alive);
     count(&mut env.counters.fragments.discarded, discarded);
     alive & !discarded
 }
@@ -187,21 +391,17 @@ fn ask_hiz<L: Lanes, const D24: bool>(
     place: Place,
     plane: &DepthBlock<D24>,
 ) -> Decision {
-    if COUNT {
-        env.counters.tiles.tested += 1;
-        env.counters.accesses.hiz_read += 1;
-    }
     let inside = env.target.inside(place.x, place.y);
     let d = env.target.depth.as_mut().expect("zmin/zmax only with depth");
-    let entry = &mut d.hiz[place.index];
-    if entry.is_stale() {
-        *entry = outlined(
+    let (min, max) = (&mut d.hiz_min[place.index], &mut d.hiz_max[place.index]);
+    if *min > *max {
+        [*min, *max] = outlined(
             l,
             #[inline(always)]
             || depth::block_range(l, &d.depth[place.index], inside),
         );
     }
-    depth::decide(env.config.compare, plane.range(), *entry)
+    depth::decide(env.config.compare, plane.span(), [*min, *max])
 }
 
 /// Bounds, stencil and depth tests with their writes; gives what passes all.
@@ -224,27 +424,14 @@ fn tests<L: Lanes, const D24: bool>(
     let stored = &mut d.depth[place.index];
     let mut alive = mask;
     if let Some([lo, hi]) = config.bounds {
-        let ok = alive
-            & outlined(
-                l,
-                #[inline(always)]
-                || within_bounds(l, stored, lo, hi),
-            );
+        let ok = within_bounds(l, stored, lo, hi) & alive;
         count(&mut c.accesses.z_read, alive);
         access.z_read = alive;
         count(&mut c.fragments.bounds_failed, alive & !ok);
         alive = ok;
     }
     let stencil_block = &mut d.stencil[place.index];
-    let stencil_pass = if face.enabled && face.state.compare != CompareFunction::Always {
-        outlined(
-            l,
-            #[inline(always)]
-            || stencil::test(l, face, stencil_block, alive),
-        )
-    } else {
-        alive
-    };
+    let stencil_pass = if face.enabled { stencil::test(l, face, stencil_block, alive) } else { alive };
     count(&mut c.fragments.stencil_failed, alive & !stencil_pass);
 
     let depth_pass = match (config.compare, decision) {
@@ -261,30 +448,39 @@ fn tests<L: Lanes, const D24: bool>(
     count(&mut c.fragments.depth_failed, stencil_pass & !depth_pass);
     if face.enabled {
         let outcomes = [alive & !stencil_pass, stencil_pass & !depth_pass, depth_pass];
-        outlined(
-            l,
-            #[inline(always)]
-            || update_stencil(l, face, c, stencil_block, alive, outcomes, access),
-        );
+        update_stencil(l, face, c, stencil_block, alive, outcomes, access);
     }
     if config.depth_write && depth_pass != 0 {
-        if COUNT {
-            c.accesses.hiz_write += 1;
-        }
-        count(&mut c.accesses.z_write, depth_pass);
         access.z_write = depth_pass;
         access.hiz_write = true;
-        let same = write_block(l, config.compare, depths, stored, depth_pass);
-        count(&mut c.events.silent_z_writes, same);
-        d.hiz[place.index] = match depths {
-            Depths::Plane(p) if depth_pass == u64::MAX && inside == u64::MAX => {
-                let [min, max] = p.range();
-                HizEntry { min, max }
-            }
-            _ => HizEntry::STALE,
-        };
+        write_depth(l, config, c, d, place.index, depths, inside, depth_pass);
     }
     depth_pass
+}
+
+/// Writes depth where `mask` is set, and keeps zmin/zmax or marks them stale.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "the inputs of one pipeline stage")]
+fn write_depth<L: Lanes, const D24: bool>(
+    l: L,
+    config: &DrawConfig<'_>,
+    c: &mut TileStageCounters,
+    d: &mut DepthTile<'_>,
+    index: usize,
+    depths: &Depths<D24>,
+    inside: u64,
+    mask: u64,
+) {
+    if COUNT {
+        c.accesses.hiz_write += 1;
+    }
+    count(&mut c.accesses.z_write, mask);
+    let same = write_block(l, config.compare, depths, &mut d.depth[index], mask);
+    count(&mut c.events.silent_z_writes, same);
+    [d.hiz_min[index], d.hiz_max[index]] = match depths {
+        Depths::Plane(p) if mask == u64::MAX && inside == u64::MAX => p.span(),
+        _ => HIZ_STALE,
+    };
 }
 
 #[inline(always)]
@@ -294,7 +490,6 @@ fn packets(mut f: impl FnMut(usize) -> u16) -> u64 {
 
 #[inline(always)]
 fn within_bounds<L: Lanes>(l: L, stored: &Block<u32>, lo: i32, hi: i32) -> u64 {
-    use crate::simd::I32;
     packets(
         #[inline(always)]
         |k| {
@@ -305,11 +500,33 @@ fn within_bounds<L: Lanes>(l: L, stored: &Block<u32>, lo: i32, hi: i32) -> u64 {
 }
 
 #[inline(always)]
-fn fragment_depth<L: Lanes, const D24: bool>(l: L, depths: &Depths<D24>, k: usize) -> crate::simd::I32<L> {
+fn fragment_depth<L: Lanes, const D24: bool>(l: L, depths: &Depths<D24>, k: usize) -> I32<L> {
     match depths {
         Depths::Plane(p) => p.packet(l, k),
         Depths::Shader(b) => depth::load(l, b, k),
     }
+}
+
+#[inline(always)]
+fn compare_plane<L: Lanes, const D24: bool>(
+    l: L,
+    f: CompareFunction,
+    plane: &DepthBlock<D24>,
+    stored: &Block<u32>,
+) -> u64 {
+    if f == CompareFunction::Less {
+        return packets(
+            #[inline(always)]
+            |k| plane.packet(l, k).lt(depth::load(l, stored, k)).bits(),
+        );
+    }
+    let (mut less, mut equal) = (0, 0);
+    for k in 0..PACKETS {
+        let (z, s) = (plane.packet(l, k), depth::load(l, stored, k));
+        less |= u64::from(z.lt(s).bits()) << (16 * k);
+        equal |= u64::from(z.eq(s).bits()) << (16 * k);
+    }
+    depth::outcome(f, less, equal)
 }
 
 #[inline(always)]
@@ -319,13 +536,18 @@ fn compare_block<L: Lanes, const D24: bool>(
     depths: &Depths<D24>,
     stored: &Block<u32>,
 ) -> u64 {
-    let (mut less, mut equal) = (0, 0);
-    for k in 0..PACKETS {
-        let (z, s) = (fragment_depth(l, depths, k), depth::load(l, stored, k));
-        less |= u64::from(z.lt(s).bits()) << (16 * k);
-        equal |= u64::from(z.eq(s).bits()) << (16 * k);
+    match depths {
+        Depths::Plane(p) => compare_plane(l, f, p, stored),
+        Depths::Shader(b) => {
+            let (mut less, mut equal) = (0, 0);
+            for k in 0..PACKETS {
+                let (z, s) = (depth::load(l, b, k), depth::load(l, stored, k));
+                less |= u64::from(z.lt(s).bits()) << (16 * k);
+                equal |= u64::from(z.eq(s).bits()) << (16 * k);
+            }
+            depth::outcome(f, less, equal)
+        }
     }
-    depth::outcome(f, less, equal)
 }
 
 /// Writes depth where `mask` is set; gives the pixels whose depth stayed the same.
@@ -370,7 +592,11 @@ fn update_stencil<L: Lanes>(
             if !tested && (ops[k].reads_stored() || face.state.write_mask != 0xff) {
                 read |= outcomes[k];
             }
-            let same = stencil::apply(l, face, ops[k], block, outcomes[k]);
+            let same = outlined(
+                l,
+                #[inline(always)]
+                || stencil::apply(l, face, ops[k], block, outcomes[k]),
+            );
             count(&mut c.events.silent_stencil_writes, same);
             count(&mut c.accesses.stencil_write, outcomes[k]);
             access.stencil_write |= outcomes[k];

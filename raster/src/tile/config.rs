@@ -15,6 +15,9 @@ pub(crate) struct StencilFace {
     pub(crate) enabled: bool,
     /// Which of fail, depth fail and pass can change a value.
     pub(crate) effective: [bool; 3],
+    /// What depth failure and pass add to every stencil value, where that is all
+    /// that the stage does.
+    pub(crate) counts: Option<[i8; 2]>,
 }
 
 impl StencilFace {
@@ -22,13 +25,25 @@ impl StencilFace {
         let effective = [state.fail_op, state.depth_fail_op, state.pass_op]
             .map(|op| attached && op != StencilOperation::Keep && state.write_mask != 0);
         let enabled = attached && (state.compare != CompareFunction::Always || effective.contains(&true));
-        Self { state, reference, enabled, effective }
+        let counts = counting(&state, effective).filter(|_| state.compare == CompareFunction::Always);
+        Self { state, reference, enabled, effective, counts }
     }
 
     /// Whether something can happen to fragments that fail the depth test.
     pub(crate) fn acts_on_depth_failure(&self) -> bool {
         self.effective[0] || self.effective[1]
     }
+}
+
+/// What depth failure and pass add, if they do no more than add.
+fn counting(state: &StencilFaceState, effective: [bool; 3]) -> Option<[i8; 2]> {
+    let step = |op, effective: bool| match op {
+        _ if !effective => Some(0),
+        StencilOperation::IncrementWrap if state.write_mask == 0xff => Some(1),
+        StencilOperation::DecrementWrap if state.write_mask == 0xff => Some(-1),
+        _ => None,
+    };
+    Some([step(state.depth_fail_op, effective[1])?, step(state.pass_op, effective[2])?])
 }
 
 /// One colour target.
@@ -72,9 +87,14 @@ pub(crate) struct DrawConfig<'a> {
     pub(crate) bounds: Option<[i32; 2]>,
     /// Encoded depth range of the viewport.
     pub(crate) depth_range: [i32; 2],
+    /// The viewport's min depth is above its max depth.
+    pub(crate) depth_reversed: bool,
     pub(crate) depth_clamp: bool,
     /// zmin/zmax tests apply.
     pub(crate) hiz: bool,
+    /// Coverage alone says which fragments there are: no clip planes, no far
+    /// clipping, no depth bounds.
+    pub(crate) plain: bool,
     /// Fragment depth is looked at by anything.
     pub(crate) needs_depth: bool,
     /// Front, back.

@@ -1,13 +1,25 @@
 //! Which 8×8 blocks of a tile a triangle touches, and which pixels of them.
+//!
+//! Large triangles are classified 16 blocks at a time, in groups of 4×4 blocks
+//! that are neighbours in memory (Morton order), so that zmin/zmax of a group are
+//! two vector loads. Blocks that are thrown away, or whose depth test is decided
+//! and whose only effect is one stencil operation, never leave the group's loop.
+//! Small triangles go straight to their few blocks.
 
 use super::Recorder;
-use super::block::{self, Env};
+use super::block::{self, Env, Place};
+use super::depth::{Decision, Decisions, DepthBlock, GroupDepth};
 use super::target::rect_mask;
 use crate::geometry::Triangle;
 use crate::simd::{I32, LANES, Lanes, each3, outlined, round_to_i32};
+use crate::texture::layout::morton;
 
 const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const IY: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
+
+/// Block column and row of the blocks of a group, in Morton order.
+pub(super) const GROUP_X: [i32; LANES] = [0, 1, 0, 1, 2, 3, 2, 3, 0, 1, 0, 1, 2, 3, 2, 3];
+pub(super) const GROUP_Y: [i32; LANES] = [0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3, 2, 2, 3, 3];
 
 /// Largest edge value that is kept inside a tile: beyond it the sign cannot
 /// change within 128 pixels.
@@ -27,6 +39,7 @@ pub(super) fn bin<L: Lanes, R: Recorder, const D24: bool>(
         || {
             for &i in bin {
                 let t = &env.chunk.chunk.triangles[i as usize];
+                env.varyings.forget();
                 triangle::<L, R, D24>(l, env, recorder, t);
             }
         },
@@ -98,9 +111,8 @@ impl TileEdges {
     }
 }
 
-/// Blocks and pixels of a tile that a draw and a triangle's bounds allow.
+/// Pixels that a draw may touch in a tile, relative to it, inclusive.
 struct Window {
-    /// Pixels relative to the tile, inclusive.
     x0: i32,
     y0: i32,
     x1: i32,
@@ -133,36 +145,29 @@ fn triangle<L: Lanes, R: Recorder, const D24: bool>(
 ) {
     let (tx, ty, side) = (env.target.x as i32, env.target.y as i32, env.target.side as i32);
     let r = &env.config.rect;
-    let b = t.bounds.map(i32::from);
-    // The draw's rectangle may cut pixels off; the bounds only say where none are.
     let w = Window {
-        x0: r[0].max(tx) - tx,
-        y0: r[1].max(ty) - ty,
-        x1: (r[2] - 1).min(tx + side - 1) - tx,
-        y1: (r[3] - 1).min(ty + side - 1) - ty,
+        x0: (r[0] - tx).max(0),
+        y0: (r[1] - ty).max(0),
+        x1: (r[2] - 1 - tx).min(side - 1),
+        y1: (r[3] - 1 - ty).min(side - 1),
     };
-    let (x0, y0) = ((b[0] - tx).max(w.x0), (b[1] - ty).max(w.y0));
-    let (x1, y1) = ((b[2] - tx).min(w.x1), (b[3] - ty).min(w.y1));
+    let [b0, b1, b2, b3] = [t.bounds[0] as i32, t.bounds[1] as i32, t.bounds[2] as i32, t.bounds[3] as i32];
+    let (x0, y0) = ((b0 - tx).max(w.x0), (b1 - ty).max(w.y0));
+    let (x1, y1) = ((b2 - tx).min(w.x1), (b3 - ty).min(w.y1));
     if x0 > x1 || y0 > y1 {
         return;
     }
     let e = TileEdges::new(t, env.target.x, env.target.y);
-    let (bx0, by0, bx1, by1) = (x0 >> 3, y0 >> 3, x1 >> 3, y1 >> 3);
-    if (bx1 - bx0) * (by1 - by0) <= 1 {
+    let blocks = [x0 >> 3, y0 >> 3, x1 >> 3, y1 >> 3];
+    let [bx0, by0, bx1, by1] = blocks;
+    if (bx1 - bx0) * (by1 - by0) <= 1 && (bx1 - bx0) + (by1 - by0) <= 2 {
         // Few blocks: their masks are as cheap as asking whether they matter.
         for by in by0..=by1 {
             for bx in bx0..=bx1 {
                 let m = e.mask(l, bx, by) & w.mask(bx, by);
-                block::run::<L, R, D24>(l, env, recorder, t, [bx, by], m);
-            }
-        }
-        return;
-    }
-    let whole = (e.e[0] + e.span(0, side).0) | (e.e[1] + e.span(1, side).0) | (e.e[2] + e.span(2, side).0) >= 0;
-    if whole {
-        for by in by0..=by1 {
-            for bx in bx0..=bx1 {
-                block::run::<L, R, D24>(l, env, recorder, t, [bx, by], w.mask(bx, by));
+                if m != 0 {
+                    one_block::<L, R, D24>(l, env, recorder, t, [bx, by], m);
+                }
             }
         }
         return;
@@ -170,13 +175,47 @@ fn triangle<L: Lanes, R: Recorder, const D24: bool>(
     outlined(
         l,
         #[inline(always)]
-        || scan_blocks::<L, R, D24>(l, env, recorder, t, &e, &w, [bx0, by0, bx1, by1]),
+        || {
+            for gy in (by0 & !3..=by1).step_by(4) {
+                for gx in (bx0 & !3..=bx1).step_by(4) {
+                    group::<L, R, D24>(l, env, recorder, t, &e, &w, blocks, [gx, gy]);
+                }
+            }
+        },
     );
 }
 
-/// Classifies 8×2 blocks at a time.
 #[inline(always)]
-fn scan_blocks<L: Lanes, R: Recorder, const D24: bool>(
+fn place(env: &Env<'_, '_>, bx: i32, by: i32) -> Place {
+    Place {
+        index: morton(bx as u32, by as u32),
+        x: env.target.x + 8 * bx as u32,
+        y: env.target.y + 8 * by as u32,
+    }
+}
+
+#[inline(always)]
+fn one_block<L: Lanes, R: Recorder, const D24: bool>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    recorder: &mut R,
+    t: &Triangle,
+    [bx, by]: [i32; 2],
+    mask: u64,
+) {
+    let p = place(env, bx, by);
+    let plane = if env.config.needs_depth {
+        DepthBlock::<D24>::new(t, p.x, p.y, env.config.depth_range)
+    } else {
+        DepthBlock::UNUSED
+    };
+    block::run::<L, R, D24>(l, env, recorder, t, p, plane, None, mask);
+}
+
+/// Classifies and runs the 4×4 blocks at (gx, gy).
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "the state of one triangle in one tile")]
+fn group<L: Lanes, R: Recorder, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
     recorder: &mut R,
@@ -184,30 +223,67 @@ fn scan_blocks<L: Lanes, R: Recorder, const D24: bool>(
     e: &TileEdges,
     w: &Window,
     [bx0, by0, bx1, by1]: [i32; 4],
+    [gx, gy]: [i32; 2],
 ) {
-    let (ix, iy) = (I32::from_array(l, &IX), I32::from_array(l, &IY));
+    let bx = I32::from_array(l, &GROUP_X) + I32::splat(l, gx);
+    let by = I32::from_array(l, &GROUP_Y) + I32::splat(l, gy);
+    let inside = bx.ge(I32::splat(l, bx0)) & bx.le(I32::splat(l, bx1)) & by.ge(I32::splat(l, by0)) & by.le(I32::splat(l, by1));
     let zero = I32::splat(l, 0);
-    for by in (by0..=by1).step_by(2) {
-        for bx in (bx0..=bx1).step_by(8) {
-            let mut reject = 0u16;
-            let mut accept = u16::MAX;
-            for k in 0..3 {
-                let v = (iy * I32::splat(l, 8 * e.dx[k]) - ix * I32::splat(l, 8 * e.dy[k]))
-                    + I32::splat(l, e.at_block(k, bx, by));
-                let (lo, hi) = e.span(k, 8);
-                reject |= (v + I32::splat(l, hi)).lt(zero).bits();
-                accept &= (v + I32::splat(l, lo)).ge(zero).bits();
-            }
-            let columns = (1u32 << (bx1 - bx + 1).min(8)) - 1;
-            let rows = if by < by1 { 0x101 } else { 1 };
-            let mut left = !reject & (columns * rows) as u16;
-            while left != 0 {
-                let i = left.trailing_zeros() as i32;
-                left &= left - 1;
-                let (x, y) = (bx + (i & 7), by + (i >> 3));
-                let covered = if accept >> i & 1 != 0 { u64::MAX } else { e.mask(l, x, y) };
-                block::run::<L, R, D24>(l, env, recorder, t, [x, y], covered & w.mask(x, y));
-            }
+    let (x, y) = (bx << 3, by << 3);
+    let mut low = I32::splat(l, 0);
+    let mut high = I32::splat(l, 0);
+    for k in 0..3 {
+        let v = (y * I32::splat(l, e.dx[k]) - x * I32::splat(l, e.dy[k])) + I32::splat(l, e.e[k]);
+        let (lo, hi) = e.span(k, 8);
+        low = low | (v + I32::splat(l, lo));
+        high = high | (v + I32::splat(l, hi));
+    }
+    let alive = inside.bits() & high.ge(zero).bits();
+    if alive == 0 {
+        return;
+    }
+    let unclipped = x.ge(I32::splat(l, w.x0))
+        & y.ge(I32::splat(l, w.y0))
+        & x.le(I32::splat(l, w.x1 - 7))
+        & y.le(I32::splat(l, w.y1 - 7));
+    let full = alive & low.ge(zero).bits() & unclipped.bits();
+
+    let first = morton(gx as u32, gy as u32);
+    let depth = env.config.needs_depth.then(
+        #[inline(always)]
+        || GroupDepth::<L, D24>::new(l, t, env.target, [gx, gy], env.config.depth_range),
+    );
+    let mut decided = Decisions::default();
+    if env.config.hiz
+        && let Some(d) = &depth
+    {
+        decided = block::ask_group(l, env, first, alive, d);
+    }
+    let face = if t.front { &env.config.stencil[0] } else { &env.config.stencil[1] };
+    let mut left = alive;
+    if !R::ON && env.config.plain {
+        left &= !block::run_group(l, env, face, first, full, &decided);
+    }
+    let bases = depth.map(
+        #[inline(always)]
+        |d| d.bases(),
+    );
+    while left != 0 {
+        let i = left.trailing_zeros() as usize;
+        left &= left - 1;
+        let (bx, by) = (gx + GROUP_X[i], gy + GROUP_Y[i]);
+        let m = if full >> i & 1 != 0 { u64::MAX } else { e.mask(l, bx, by) & w.mask(bx, by) };
+        if m == 0 {
+            continue;
         }
+        let plane = match &bases {
+            Some(b) => DepthBlock::<D24>::with_base(t, b[i], env.config.depth_range),
+            None => DepthBlock::UNUSED,
+        };
+        let decision: Option<Decision> = env.config.hiz.then(
+            #[inline(always)]
+            || decided.of(i),
+        );
+        block::run::<L, R, D24>(l, env, recorder, t, place(env, bx, by), plane, decision, m);
     }
 }

@@ -2,9 +2,11 @@
 
 use crate::format::D24_MAX;
 use crate::geometry::{D24_BASE_LIMIT, D24_FRACTION, D24_SCALE, Triangle};
-use crate::simd::{F32, I32, LANES, Lanes, round_to_i32};
+use super::coverage::{GROUP_X, GROUP_Y};
+use super::target::TileTarget;
+use crate::simd::{F32, F64, I32, LANES, Lanes, round_to_i32};
 use crate::state::CompareFunction;
-use crate::texture::{Block, HizEntry};
+use crate::texture::Block;
 
 /// Half a D24 step in the fraction of D24 planes.
 const D24_HALF: i32 = 1 << (D24_FRACTION - 1);
@@ -56,7 +58,11 @@ impl<const D24: bool> DepthBlock<D24> {
 
     #[inline(always)]
     pub(super) fn new(t: &Triangle, x: u32, y: u32, range: [i32; 2]) -> Self {
-        let base = t.depth_base(x, y);
+        Self::at_depth(t, t.depth_base(x, y) + t.bias, range)
+    }
+
+    #[inline(always)]
+    fn at_depth(t: &Triangle, base: f64, range: [i32; 2]) -> Self {
         let base = if D24 {
             let b = base * D24_SCALE;
             let b = if b < D24_BASE_LIMIT { b } else { D24_BASE_LIMIT };
@@ -64,6 +70,12 @@ impl<const D24: bool> DepthBlock<D24> {
         } else {
             (base as f32).to_bits() as i32
         };
+        Self { base, slope: t.slope, range }
+    }
+
+    /// The block whose `base` a [`GroupDepth`] has found.
+    #[inline(always)]
+    pub(super) fn with_base(t: &Triangle, base: i32, range: [i32; 2]) -> Self {
         Self { base, slope: t.slope, range }
     }
 
@@ -95,13 +107,14 @@ impl<const D24: bool> DepthBlock<D24> {
     #[inline(always)]
     fn corners(&self) -> ([i32; 2], [i32; 2]) {
         // The sign bit of a float's bits and of an integer are in one place.
-        let falls = self.slope.map(|s| s < 0);
-        (falls.map(|f| if f { 7 } else { 0 }), falls.map(|f| if f { 0 } else { 7 }))
+        let [fx, fy] = [self.slope[0] < 0, self.slope[1] < 0];
+        let far = |falls: bool| if falls { 7 } else { 0 };
+        ([far(fx), far(fy)], [far(!fx), far(!fy)])
     }
 
     /// Smallest and largest clamped depth of the block's 64 pixels.
     #[inline(always)]
-    pub(super) fn range(&self) -> [i32; 2] {
+    pub(super) fn span(&self) -> [i32; 2] {
         let (lo, hi) = self.corners();
         [self.clamped(self.raw_at(lo[0], lo[1])), self.clamped(self.raw_at(hi[0], hi[1]))]
     }
@@ -133,28 +146,118 @@ impl<const D24: bool> DepthBlock<D24> {
         }
     }
 
-    /// Pixels that are not beyond the far end, before clamping.
+    /// Pixels of the block at (x, y) whose depth, before bias and clamping, is not
+    /// beyond the far end of the viewport's range (rules §4).
     #[inline(always)]
-    pub(super) fn not_beyond_far<L: Lanes>(&self, l: L) -> u64 {
-        let far: i32 = if D24 { D24_MAX as i32 } else { 1.0f32.to_bits() as i32 };
-        let (_, hi) = self.corners();
-        let largest = self.raw_at(hi[0], hi[1]);
-        let all_near = if D24 { largest <= far } else { f32::from_bits(largest as u32) <= 1.0 };
-        if all_near {
-            return u64::MAX;
-        }
+    pub(super) fn not_beyond_far<L: Lanes>(l: L, t: &Triangle, x: u32, y: u32, range: [i32; 2], reversed: bool) -> u64 {
+        let plane = Self::at_depth(t, t.depth_base(x, y), range);
+        let far = range[usize::from(!reversed)];
         let mut m = 0;
         for k in 0..4 {
-            let z = self.raw_packet(l, k);
-            let near = if D24 {
-                z.le(I32::splat(l, far))
-            } else {
-                z.to_u32().to_f32_bits().le(F32::splat(l, 1.0))
+            let z = plane.raw_packet(l, k);
+            let within = match (D24, reversed) {
+                (true, false) => z.le(I32::splat(l, far)),
+                (true, true) => z.ge(I32::splat(l, far)),
+                (false, false) => z.to_u32().to_f32_bits().le(F32::splat(l, f32::from_bits(far as u32))),
+                (false, true) => z.to_u32().to_f32_bits().ge(F32::splat(l, f32::from_bits(far as u32))),
             };
-            m |= u64::from(near.bits()) << (16 * k);
+            m |= u64::from(within.bits()) << (16 * k);
         }
         m
     }
+}
+
+/// The same for the 16 blocks of a group.
+pub(super) struct GroupDepth<L: Lanes, const D24: bool> {
+    base: I32<L>,
+    slope: [i32; 2],
+    range: [i32; 2],
+}
+
+impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
+    /// Planes over the blocks of the group at block (gx, gy) of the tile.
+    #[inline(always)]
+    pub(super) fn new(l: L, t: &Triangle, target: &TileTarget<'_>, [gx, gy]: [i32; 2], range: [i32; 2]) -> Self {
+        let x = (I32::from_array(l, &GROUP_X) << 3) + I32::splat(l, target.x as i32 + 8 * gx);
+        let y = (I32::from_array(l, &GROUP_Y) << 3) + I32::splat(l, target.y as i32 + 8 * gy);
+        let dx = (F64::from_f32(x.to_f32()) + 0.5) - f64::from(t.x) * (1.0 / 256.0);
+        let dy = (F64::from_f32(y.to_f32()) + 0.5) - f64::from(t.y) * (1.0 / 256.0);
+        let along = F64::splat(l, t.zx) * dx + F64::splat(l, t.zy) * dy;
+        let z = (F64::splat(l, f64::from(t.z)) + along) + t.bias;
+        let base =
+            if D24 { (z * D24_SCALE).round_to_i32(D24_BASE_LIMIT) } else { z.to_f32().to_bits().to_i32() };
+        Self { base, slope: t.slope, range }
+    }
+
+    /// The blocks' bases.
+    #[inline(always)]
+    pub(super) fn bases(&self) -> [i32; LANES] {
+        self.base.to_array()
+    }
+
+    /// Clamped depth at one and the same pixel of every block.
+    #[inline(always)]
+    fn at(&self, [ix, iy]: [i32; 2]) -> I32<L> {
+        let l = self.base.l;
+        if D24 {
+            let offset = self.slope[0] * ix + self.slope[1] * iy + D24_HALF;
+            let z = (self.base + I32::splat(l, offset)) >> D24_FRACTION;
+            z.max(I32::splat(l, self.range[0])).min(I32::splat(l, self.range[1]))
+        } else {
+            let [sx, sy, lo, hi] =
+                [self.slope[0], self.slope[1], self.range[0], self.range[1]].map(|b| f32::from_bits(b as u32));
+            let z = (self.base.to_u32().to_f32_bits() + sx * ix as f32) + sy * iy as f32;
+            z.clamp(lo, hi).to_bits().to_i32()
+        }
+    }
+
+    /// Smallest and largest clamped depth of each block.
+    #[inline(always)]
+    pub(super) fn span(&self) -> [I32<L>; 2] {
+        let corner = |k: usize, far: i32| if (self.slope[k] < 0) == (far == 0) { 7 } else { 0 };
+        [self.at([corner(0, 0), corner(1, 0)]), self.at([corner(0, 1), corner(1, 1)])]
+    }
+}
+
+/// What zmin/zmax say about the depth tests of a group's blocks.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Decisions {
+    pub(super) pass: u16,
+    pub(super) fail: u16,
+}
+
+impl Decisions {
+    #[inline(always)]
+    pub(super) fn of(self, i: usize) -> Decision {
+        if self.pass >> i & 1 != 0 {
+            Decision::Pass
+        } else if self.fail >> i & 1 != 0 {
+            Decision::Fail
+        } else {
+            Decision::Unknown
+        }
+    }
+}
+
+/// Rules §7.1 for 16 blocks: ranges [a, b] against stored [min, max].
+#[inline(always)]
+pub(super) fn decide_group<L: Lanes>(
+    compare: CompareFunction,
+    [a, b]: [I32<L>; 2],
+    [min, max]: [I32<L>; 2],
+) -> Decisions {
+    let apart = b.lt(min) | a.gt(max);
+    let same = a.eq(b) & min.eq(max) & a.eq(min);
+    let (pass, fail) = match compare {
+        CompareFunction::Less => (b.lt(min), a.ge(max)),
+        CompareFunction::LessEqual => (b.le(min), a.gt(max)),
+        CompareFunction::Greater => (a.gt(max), b.le(min)),
+        CompareFunction::GreaterEqual => (a.ge(max), b.lt(min)),
+        CompareFunction::Equal => (same, apart),
+        CompareFunction::NotEqual => (apart, same),
+        CompareFunction::Never | CompareFunction::Always => return Decisions::default(),
+    };
+    Decisions { pass: pass.bits(), fail: fail.bits() & !pass.bits() }
 }
 
 /// What zmin/zmax say about a depth test.
@@ -167,8 +270,7 @@ pub(super) enum Decision {
 
 /// Rules §7.1.
 #[inline(always)]
-pub(super) fn decide(compare: CompareFunction, [a, b]: [i32; 2], stored: HizEntry) -> Decision {
-    let HizEntry { min, max } = stored;
+pub(super) fn decide(compare: CompareFunction, [a, b]: [i32; 2], [min, max]: [i32; 2]) -> Decision {
     let (pass, fail) = match compare {
         CompareFunction::Less => (b < min, a >= max),
         CompareFunction::LessEqual => (b <= min, a > max),
@@ -220,7 +322,7 @@ pub(super) fn outcome(f: CompareFunction, less: u64, equal: u64) -> u64 {
 
 /// zmin and zmax of the pixels of `inside`.
 #[inline(always)]
-pub(super) fn block_range<L: Lanes>(l: L, b: &Block<u32>, inside: u64) -> HizEntry {
+pub(super) fn block_range<L: Lanes>(l: L, b: &Block<u32>, inside: u64) -> [i32; 2] {
     let mut min = I32::splat(l, i32::MAX);
     let mut max = I32::splat(l, 0);
     for k in 0..4 {
@@ -229,5 +331,5 @@ pub(super) fn block_range<L: Lanes>(l: L, b: &Block<u32>, inside: u64) -> HizEnt
         min = min.min(valid.select_i32(z, I32::splat(l, i32::MAX)));
         max = max.max(valid.select_i32(z, I32::splat(l, 0)));
     }
-    HizEntry { min: min.reduce_min(), max: max.reduce_max() }
+    [min.reduce_min(), max.reduce_max()]
 }

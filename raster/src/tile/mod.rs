@@ -114,6 +114,7 @@ pub(crate) struct DrawWork<'a> {
 pub(crate) struct Scratch {
     pub(crate) counters: Vec<TileStageCounters>,
     pub(crate) outputs: Box<[PacketOutput; PACKETS]>,
+    varyings: shade::VaryingCache,
 }
 
 impl Scratch {
@@ -121,6 +122,7 @@ impl Scratch {
         Self {
             counters: vec![TileStageCounters::default(); draws],
             outputs: Box::new(core::array::from_fn(|_| PacketOutput::EMPTY)),
+            varyings: shade::VaryingCache::default(),
         }
     }
 }
@@ -170,6 +172,7 @@ fn run_tile_lanes<L: Lanes, R: Recorder>(
                 target: &mut *target,
                 counters: &mut scratch.counters[w.draw],
                 outputs: &mut scratch.outputs,
+                varyings: &mut scratch.varyings,
             };
             match w.config.encoding {
                 DepthEncoding::D24 => coverage::bin::<L, R, true>(l, &mut env, recorder, bin),

@@ -164,6 +164,13 @@ impl<L: Lanes> Writer<'_, L> {
     /// had to be limited.
     #[inline(always)]
     fn bytes(&mut self, src: &Channels<F32<L>>, live: u16) -> Channels<I32<L>> {
+        if !F32::all_in_unit(src).bits() & live == 0 {
+            // Nothing to limit; what lanes that are not live hold is of no account.
+            return each4(
+                #[inline(always)]
+                |c| (src[c] * 255.0 + 8_388_608.0).to_bits().to_i32() & I32::splat(self.l, 0xff),
+            );
+        }
         let (zero, one) = (F32::splat(self.l, 0.0), F32::splat(self.l, 1.0));
         each4(
             #[inline(always)]

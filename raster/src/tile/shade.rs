@@ -6,7 +6,7 @@ use crate::MAX_VARYINGS;
 use crate::format;
 use crate::geometry::Triangle;
 use crate::shader::{PACKETS, ShadeBlock, VaryingPlanes};
-use crate::simd::{F32, I32, LANES, Lanes};
+use crate::simd::{F32, F64, I32, LANES, Lanes, each3, outlined};
 use crate::texture::Block;
 
 const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
@@ -27,10 +27,14 @@ struct Frame {
 impl Frame {
     #[inline(always)]
     fn new(env: &Env<'_, '_>, t: &Triangle) -> Self {
-        let [p, q, r] = t.v.map(|v| {
-            let s = env.chunk.chunk.screen(env.chunk.shaded, v);
-            (f64::from(s.x) * (1.0 / 256.0), f64::from(s.y) * (1.0 / 256.0))
-        });
+        let (chunk, shaded) = (env.chunk.chunk, env.chunk.shaded);
+        let [p, q, r] = each3(
+            #[inline(always)]
+            |k| {
+                let s = chunk.screen(shaded, t.v[k]);
+                (f64::from(s.x) * (1.0 / 256.0), f64::from(s.y) * (1.0 / 256.0))
+            },
+        );
         let (ax, ay, bx, by) = (q.0 - p.0, q.1 - p.1, r.0 - p.0, r.1 - p.1);
         Self { x0: p.0, y0: p.1, ax, ay, bx, by, det: ax * by - bx * ay }
     }
@@ -47,50 +51,102 @@ impl Frame {
     }
 }
 
-/// Planes of all varyings over one block.
-#[inline(always)]
-fn varying_planes(env: &Env<'_, '_>, t: &Triangle, place: Place) -> VaryingPlanes {
-    let config = env.config;
-    let n = config.varyings;
-    let mut p = VaryingPlanes {
-        base: [0.0; MAX_VARYINGS + 1],
-        gx: [0.0; MAX_VARYINGS + 1],
-        gy: [0.0; MAX_VARYINGS + 1],
-        perspective: config.perspective,
-    };
-    if n == 0 {
-        return p;
-    }
-    let frame = Frame::new(env, t);
-    let inv_w = t.v.map(|v| env.chunk.chunk.screen(env.chunk.shaded, v).inv_w);
-    for i in 0..n {
-        let a = t.v.map(|v| env.chunk.chunk.varying(env.chunk.shaded, v, i, n));
-        let [base, gx, gy] = if config.flat >> i & 1 != 0 {
-            [flat_value(env, t, i, n), 0.0, 0.0]
-        } else if config.perspective >> i & 1 != 0 {
-            frame.plane(core::array::from_fn(|k| a[k] * inv_w[k]), place.x, place.y)
-        } else {
-            frame.plane(a, place.x, place.y)
-        };
-        (p.base[i], p.gx[i], p.gy[i]) = (base, gx, gy);
-    }
-    if config.perspective != 0 {
-        let [base, gx, gy] = frame.plane(inv_w, place.x, place.y);
-        (p.base[MAX_VARYINGS], p.gx[MAX_VARYINGS], p.gy[MAX_VARYINGS]) = (base, gx, gy);
-    }
-    p
+/// Planes of a triangle's varyings: found once a triangle and tile, moved to each block.
+#[derive(Default)]
+pub(super) struct VaryingCache {
+    ready: bool,
+    /// Vertex 0's value and gradients, in doubles, of each varying.
+    q: [f64; LANES],
+    gx: [f64; LANES],
+    gy: [f64; LANES],
+    /// The same of 1/w.
+    inv_w: [f64; 3],
+    /// Vertex 0's position in pixels.
+    x0: f64,
+    y0: f64,
+    planes: VaryingPlanes,
 }
 
-/// A flat varying: that of the primitive's first vertex, which clipping may have
-/// cut away; the clipper keeps it in every vertex it makes.
+const _: () = assert!(MAX_VARYINGS <= LANES);
+
+impl VaryingCache {
+    /// Another triangle comes.
+    #[inline(always)]
+    pub(super) fn forget(&mut self) {
+        self.ready = false;
+    }
+}
+
+/// Finds the planes of triangle `t` (rules §3.6, §6).
 #[inline(always)]
-fn flat_value(env: &Env<'_, '_>, t: &Triangle, i: usize, n: usize) -> f32 {
-    env.chunk.chunk.varying(env.chunk.shaded, t.v[0], i, n)
+fn prepare_varyings<L: Lanes>(l: L, env: &mut Env<'_, '_>, t: &Triangle) {
+    let config = env.config;
+    let n = config.varyings;
+    let frame = Frame::new(env, t);
+    let v = &mut *env.varyings;
+    v.ready = true;
+    (v.x0, v.y0) = (frame.x0, frame.y0);
+    v.planes.perspective = config.perspective;
+    let (chunk, shaded) = (env.chunk.chunk, env.chunk.shaded);
+    let inv_w: [f32; 3] = each3(
+        #[inline(always)]
+        |k| chunk.screen(shaded, t.v[k]).inv_w,
+    );
+    let mut q = [[0.0f32; LANES]; 3];
+    for i in 0..n {
+        let flat = config.flat >> i & 1 != 0;
+        for k in 0..3 {
+            let a = chunk.varying(shaded, t.v[if flat { 0 } else { k }], i, n);
+            q[k][i] = if config.perspective >> i & 1 != 0 { a * inv_w[k] } else { a };
+        }
+    }
+    let [q0, q1, q2] = each3(
+        #[inline(always)]
+        |k| F64::from_f32(F32::from_array(l, &q[k])),
+    );
+    let (e1, e2) = (q1 - q0, q2 - q0);
+    let gx = (e1 * frame.by - e2 * frame.ay) / F64::splat(l, frame.det);
+    let gy = (e2 * frame.ax - e1 * frame.bx) / F64::splat(l, frame.det);
+    (v.q, v.gx, v.gy) = (q0.to_array(), gx.to_array(), gy.to_array());
+    v.planes.gx[..LANES].copy_from_slice(&gx.to_f32().to_array());
+    v.planes.gy[..LANES].copy_from_slice(&gy.to_f32().to_array());
+    // A flat varying is its value, whatever it is: no arithmetic on infinities.
+    for i in (0..n).filter(|i| config.flat >> i & 1 != 0) {
+        // −0 added to anything is that thing, −0 included.
+        (v.gx[i], v.gy[i], v.planes.gx[i], v.planes.gy[i]) = (0.0, 0.0, -0.0, -0.0);
+    }
+    if config.perspective != 0 {
+        let [q0, q1, q2] = [f64::from(inv_w[0]), f64::from(inv_w[1]), f64::from(inv_w[2])];
+        let (e1, e2) = (q1 - q0, q2 - q0);
+        let gx = (e1 * frame.by - e2 * frame.ay) / frame.det;
+        let gy = (e2 * frame.ax - e1 * frame.bx) / frame.det;
+        v.inv_w = [q0, gx, gy];
+        (v.planes.gx[MAX_VARYINGS], v.planes.gy[MAX_VARYINGS]) = (gx as f32, gy as f32);
+    }
+}
+
+/// Moves the planes to the block at `place`.
+#[inline(always)]
+fn move_varyings<L: Lanes>(l: L, env: &mut Env<'_, '_>, place: Place) {
+    let v = &mut *env.varyings;
+    let (dx, dy) = ((f64::from(place.x) + 0.5) - v.x0, (f64::from(place.y) + 0.5) - v.y0);
+    let q = F64::from_array(l, &v.q);
+    let base = q + (F64::from_array(l, &v.gx) * dx + F64::from_array(l, &v.gy) * dy);
+    base.to_f32().store((&mut v.planes.base[..LANES]).try_into().expect("16 varyings"));
+    let mut flat = env.config.flat;
+    while flat != 0 {
+        let i = flat.trailing_zeros() as usize;
+        flat &= flat - 1;
+        v.planes.base[i] = v.q[i] as f32;
+    }
+    let [q, gx, gy] = v.inv_w;
+    v.planes.base[MAX_VARYINGS] = (q + (gx * dx + gy * dy)) as f32;
 }
 
 /// Shades the fragments of `live`; gives those that were discarded.
 #[inline(always)]
-pub(super) fn run<const D24: bool>(
+pub(super) fn run<L: Lanes, const D24: bool>(
+    l: L,
     env: &mut Env<'_, '_>,
     t: &Triangle,
     place: Place,
@@ -98,12 +154,24 @@ pub(super) fn run<const D24: bool>(
     live: u64,
 ) -> u64 {
     let Some(shader) = env.config.shader else { return 0 };
-    let planes = varying_planes(env, t, place);
+    if env.config.varyings != 0 {
+        if !env.varyings.ready {
+            outlined(
+                l,
+                #[inline(always)]
+                || prepare_varyings(l, env, t),
+            );
+        }
+        move_varyings(l, env, place);
+    } else {
+        env.varyings.planes.perspective = 0;
+    }
     let mut block = ShadeBlock {
         x: place.x,
         y: place.y,
         live,
-        planes: &planes,
+        planes: &env.varyings.planes,
+        varyings: env.config.varyings,
         depth: plane.for_shader(),
         front_facing: t.front,
         primitive: t.primitive,
@@ -115,9 +183,13 @@ pub(super) fn run<const D24: bool>(
     if !env.config.discards {
         return 0;
     }
-    (0..PACKETS).filter(|k| (live >> (16 * k)) as u16 != 0).fold(0, |m, k| {
-        m | u64::from(env.outputs[k].discarded) << (16 * k)
-    }) & live
+    let mut discarded = 0;
+    for k in 0..PACKETS {
+        if (live >> (16 * k)) as u16 != 0 {
+            discarded |= u64::from(env.outputs[k].discarded) << (16 * k);
+        }
+    }
+    discarded & live
 }
 
 /// Encodes the depths that the shader wrote for the fragments of `live`.
@@ -144,6 +216,9 @@ pub(super) fn shader_depths<const D24: bool>(env: &mut Env<'_, '_>, live: u64) -
 /// Pixels of the block on the right side of every user clip plane (rules §4).
 #[inline(always)]
 pub(super) fn inside_clip_planes<L: Lanes>(l: L, env: &Env<'_, '_>, t: &Triangle, place: Place) -> u64 {
+    if env.config.clip_planes.is_empty() {
+        return u64::MAX;
+    }
     let frame = Frame::new(env, t);
     let chunk = env.chunk.chunk;
     let mut m = u64::MAX;

@@ -36,6 +36,27 @@ pub(super) fn test<L: Lanes>(l: L, face: &StencilFace, stored: &Block<u8>, mask:
     pass.to_bitmask() & mask
 }
 
+/// Adds `step` (±1, modulo 256) to the pixels of `mask`.
+#[inline(always)]
+pub(super) fn add<L: Lanes>(l: L, block: &mut Block<u8>, mask: u64, step: i8) {
+    let isa = l.isa();
+    let old = load(l, block);
+    let new = old + u8x64::splat(isa, step as u8);
+    isa.select_u8x64(mask8x64::from_bitmask(isa, mask), new, old).store_slice(&mut block.0);
+}
+
+/// Adds `step` to every pixel of the blocks `first + i`, bit i of `which` set.
+#[inline(always)]
+pub(super) fn add_to_blocks<L: Lanes>(l: L, blocks: &mut [Block<u8>], first: usize, which: u16, step: i8) {
+    let step = u8x64::splat(l.isa(), step as u8);
+    let mut left = which;
+    while left != 0 {
+        let b = &mut blocks[first + left.trailing_zeros() as usize];
+        left &= left - 1;
+        (load(l, b) + step).store_slice(&mut b.0);
+    }
+}
+
 /// Applies `op` to the pixels of `mask`; gives those whose byte stayed the same.
 #[inline(always)]
 pub(super) fn apply<L: Lanes>(l: L, face: &StencilFace, op: StencilOperation, block: &mut Block<u8>, mask: u64) -> u64 {

@@ -1,7 +1,7 @@
 //! A tile's share of the attachments: disjoint slices, handed out before the
 //! workers start.
 
-use crate::texture::{Block, Block4, HizEntry};
+use crate::texture::{Block, Block4};
 
 /// Colour blocks of a tile.
 pub(crate) enum ColorTile<'a> {
@@ -16,7 +16,8 @@ pub(crate) enum ColorTile<'a> {
 pub(crate) struct DepthTile<'a> {
     pub(crate) depth: &'a mut [Block<u32>],
     pub(crate) stencil: &'a mut [Block<u8>],
-    pub(crate) hiz: &'a mut [HizEntry],
+    pub(crate) hiz_min: &'a mut [i32],
+    pub(crate) hiz_max: &'a mut [i32],
 }
 
 /// One execution tile.

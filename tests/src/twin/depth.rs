@@ -7,8 +7,6 @@ use super::convert::{d24, floor_log2, pow2, rne};
 use super::plane::{Plane, in_block};
 use super::setup::Triangle;
 
-const D24_MAX: i64 = 0x00ff_ffff;
-
 /// Stored form of depth: D24 integers, or bits of floats in 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
@@ -64,6 +62,8 @@ pub(super) struct DepthPlane {
     plane: Plane,
     bias: f64,
     range: [f32; 2],
+    /// The viewport's far end, and whether depth falls towards it.
+    far: (f32, bool),
 }
 
 impl DepthPlane {
@@ -80,6 +80,7 @@ impl DepthPlane {
             bias: offset(bias, &plane, z, encoding),
             plane,
             range: range(viewport),
+            far: (viewport.max_depth, encoding.encode(viewport.min_depth) > encoding.encode(viewport.max_depth)),
         }
     }
 
@@ -91,24 +92,33 @@ impl DepthPlane {
 
     /// Stored depth at pixel (x, y), and whether it is beyond the far end before limiting.
     pub(super) fn at(&self, x: u32, y: u32) -> (u32, bool) {
-        let base = self.plane.base(x - x % 8, y - y % 8) + self.bias;
+        let base = self.plane.base(x - x % 8, y - y % 8);
+        let (ix, iy) = (x % 8, y % 8);
         match self.encoding {
-            Encoding::D24 => self.integer(base, x % 8, y % 8),
+            Encoding::D24 => {
+                let [lo, hi] = self.range.map(|v| i64::from(d24(v)));
+                let z = self.integer(base + self.bias, ix, iy);
+                let beyond = self.is_beyond(self.integer(base, ix, iy), i64::from(d24(self.far.0)));
+                (z.max(lo).min(hi) as u32, beyond)
+            }
             Encoding::Float => {
-                let z = in_block(base, self.plane.gx, self.plane.gy, x % 8, y % 8);
-                (limit(z, self.range).to_bits(), z > 1.0)
+                let at = |base| in_block(base, self.plane.gx, self.plane.gy, ix, iy);
+                let beyond = self.is_beyond(at(base), self.far.0);
+                (limit(at(base + self.bias), self.range).to_bits(), beyond)
             }
         }
     }
 
-    fn integer(&self, base: f64, ix: u32, iy: u32) -> (u32, bool) {
+    fn is_beyond<T: PartialOrd>(&self, z: T, far: T) -> bool {
+        if self.far.1 { z < far } else { z > far }
+    }
+
+    fn integer(&self, base: f64, ix: u32, iy: u32) -> i64 {
         let base = scaled(base).clamp(-1_677_721_583.0, 1_677_721_583.0) as i64;
         let slope = |g: f64| scaled(g).clamp(-pow2(25), pow2(25)) as i64;
         let fixed =
             base + slope(self.plane.gx) * i64::from(ix) + slope(self.plane.gy) * i64::from(iy);
-        let z = (fixed + 16).div_euclid(32);
-        let [lo, hi] = self.range.map(|v| i64::from(d24(v)));
-        (z.max(lo).min(hi) as u32, z > D24_MAX)
+        (fixed + 16).div_euclid(32)
     }
 }
 

@@ -4,11 +4,14 @@
 
 use std::path::PathBuf;
 
+use gnomon_pipeline::caster::Caster;
+use gnomon_pipeline::heat;
 use gnomon_pipeline::mesh::Shading;
 use gnomon_pipeline::obj;
 use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth};
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Scene, builtin, frame_model};
+use gnomon_pipeline::silhouette::{Orientation, Silhouette, light_facing};
 use gnomon_pipeline::technique::{self, Params, VolumeMethod};
 use gnomon_raster::GpuConfig;
 
@@ -322,6 +325,38 @@ fn casters_that_cross_the_near_plane_keep_their_caps_to_the_bit() {
     assert!(draw(&scene, &[]).stencil == zfail.stencil);
 }
 
+/// The overlay's data and the counters tell the same story.
+#[test]
+fn heat_adds_up_to_the_counters() {
+    let scene = builtin::build("columns").unwrap();
+    let technique = technique::find("shadow-volumes").unwrap();
+    let params = Params::defaults(technique);
+    let settings = RenderSettings {
+        size: [100, 76],
+        ..RenderSettings::default()
+    };
+    let heat = heat::record(&scene, technique, &params, &settings).unwrap();
+    let drawn = render(&scene, technique, &params, &settings).unwrap();
+    assert_eq!(heat.passes.len(), drawn.report.passes.len());
+    for (heat, counted) in heat.passes.iter().zip(&drawn.report.passes) {
+        let totals = counted.totals();
+        let overdraw: u64 = heat.overdraw.iter().map(|o| u64::from(*o)).sum();
+        assert_eq!(overdraw, totals.fragments.generated, "{}", heat.label);
+        let of = |client: fn(&heat::BlockBytes) -> u64| heat.bytes.iter().map(client).sum::<u64>();
+        let traffic = &totals.traffic;
+        let ours = [
+            of(|b| b.z),
+            of(|b| b.stencil),
+            of(|b| b.color),
+            of(|b| b.hiz),
+        ];
+        let theirs = [traffic.z, traffic.stencil, traffic.color[0], traffic.hiz];
+        assert_eq!(ours, theirs.map(|t| t.bytes()), "{}", heat.label);
+    }
+    let volumes = heat.sum(|label| label == "volumes");
+    assert!(volumes.overdraw.iter().any(|o| *o > 2) && volumes.bytes.len() == 13 * 10);
+}
+
 /// `$GNOMON_DATA`, or `shared/data` beside the workspace.
 fn mesh_folder() -> Option<PathBuf> {
     let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
@@ -331,7 +366,44 @@ fn mesh_folder() -> Option<PathBuf> {
     folder.exists().then_some(folder)
 }
 
-/// With float depth every interior pixel equals the truth. D24 limits the slope
+/// Whether a pixel's centre is within half a pixel of a silhouette edge that
+/// lies on the surface seen there: scanned surfaces fold within a half-pixel,
+/// unseen by the truth's lattice, and where the light cap meets a side the two
+/// depths differ by less than their rounding.
+fn is_near_silhouette(scene: &Scene, drawn: &Rendered, pixel: usize) -> bool {
+    let [w, h] = drawn.size;
+    let clip = scene
+        .camera
+        .clip_from_world(f64::from(w) / f64::from(h))
+        .map(|r| r.map(f64::from));
+    let centre = [pixel as u32 % w, pixel as u32 / w].map(|c| f64::from(c) + 0.5);
+    let on_screen = |p: glam::DVec3| {
+        let at = |r: [f64; 4]| ((r[0] * p.x + r[1] * p.y) + r[2] * p.z) + r[3];
+        let [x, y, z, w_clip] = clip.map(at);
+        let (x, y) = (
+            (x / w_clip + 1.0) * 0.5 * f64::from(w),
+            (1.0 - y / w_clip) * 0.5 * f64::from(h),
+        );
+        glam::DVec3::new(x, y, z / w_clip)
+    };
+    scene.casters().any(|object| {
+        let mesh = &object.mesh;
+        let caster = Caster::new(mesh);
+        let orientation = Orientation::closed(&light_facing(mesh, scene.lights[0].hard()));
+        let silhouette = Silhouette::new(mesh, caster.adjacency(), &orientation);
+        silhouette.edges.iter().any(|edge| {
+            let [a, b] = edge.map(|i| on_screen(mesh.position(i)));
+            let (d, p) = (b - a, glam::DVec3::new(centre[0], centre[1], 0.0) - a);
+            let t = ((d.x * p.x + d.y * p.y) / (d.x * d.x + d.y * d.y)).clamp(0.0, 1.0);
+            let nearest = a + d * t;
+            let (dx, dy) = (nearest.x - centre[0], nearest.y - centre[1]);
+            let depth = (nearest.z - f64::from(drawn.depth[pixel])).abs();
+            dx * dx + dy * dy < 0.25 && depth < 1e-4
+        })
+    })
+}
+
+/// Every interior pixel but those next to a silhouette equals the truth. D24 limits the slope
 /// of needle-thin triangles seen edge-on, which the counters tell: each may
 /// spoil a pixel.
 fn check_models(files: &[&str], size: [u32; 2]) {
@@ -345,18 +417,27 @@ fn check_models(files: &[&str], size: [u32; 2]) {
         for format in ["depth-format=d32f", "depth-format=d24"] {
             let of = |m: &str| draw_sized(&scene, "shadow-volumes", &[m, format], size);
             let [zfail, zpass] = ["method=zfail", "method=zpass"].map(of);
-            let compared = against_truth(&scene, &zfail);
-            let differ = compared.differing.len() as u64;
+            let mut compared = against_truth(&scene, &zfail);
+            let excused = compared.differing.len();
+            compared
+                .differing
+                .retain(|(i, ..)| !is_near_silhouette(&scene, &zfail, *i));
+            let differ = compared.differing.len();
+            let excused = excused - differ;
             let passes = &zfail.report.passes;
             let limited = passes
                 .iter()
                 .map(|p| p.totals().primitives.depth_slope_limited);
             let limited: u64 = limited.sum();
             eprintln!(
-                "{file} {format}: {} interior, {} in shadow, {limited} slopes limited, {:?}",
+                "{file} {format}: {} interior, {} in shadow, {limited} slopes limited, {excused} at silhouettes, {:?}",
                 compared.interior, compared.shadowed, compared.differing
             );
-            assert!(differ <= limited, "{file}: {:?}", compared.differing);
+            assert!(
+                excused < 5 && differ as u64 <= limited,
+                "{file}: {:?}",
+                compared.differing
+            );
             assert!(compared.shadowed > 300, "{file}");
             let methods_differ = differences(&zpass.stencil, &zfail.stencil);
             assert_eq!(methods_differ, 0, "{file}: z-pass and z-fail");

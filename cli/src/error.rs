@@ -1,0 +1,56 @@
+//! What ends the program early, and with which exit code.
+
+use std::path::PathBuf;
+
+use gnomon_pipeline::render::RenderError;
+use gnomon_pipeline::scene::SceneError;
+use gnomon_pipeline::technique::TechniqueError;
+use thiserror::Error;
+
+/// Why a verb did not finish.
+#[derive(Debug, Error)]
+pub(crate) enum CliError {
+    /// The scene cannot be had.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The technique or a parameter is wrong.
+    #[error(transparent)]
+    Technique(#[from] TechniqueError),
+    /// The scene cannot be rendered so.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A flag's value is wrong.
+    #[error("{flag} is `{value}`; {valid}")]
+    Flag {
+        /// The flag.
+        flag: &'static str,
+        /// What was given.
+        value: String,
+        /// What would be valid.
+        valid: String,
+    },
+    /// A file cannot be written.
+    #[error("{}: cannot be written: {source}; nothing was written", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Standard output cannot be written, other than by a closed pipe.
+    #[error("standard output cannot be written: {0}")]
+    Stdout(std::io::Error),
+    /// A check of our own failed: a fault of the program or the machine.
+    #[error("check failed: {0}")]
+    Check(String),
+}
+
+impl CliError {
+    /// 1 for a failed check, 2 for bad input.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::Check(_) => 1,
+            _ => 2,
+        }
+    }
+}

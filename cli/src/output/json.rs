@@ -1,0 +1,389 @@
+//! The JSON documents; `docs/json.md` describes them. Keys are only ever added.
+
+use gnomon_pipeline::render::Rendered;
+use gnomon_pipeline::technique::{Params, Technique, VolumeMethod, Warning};
+use gnomon_raster::{
+    ClientTraffic, Counters, FragmentCounters, GpuConfig, PassReport, SubmitReport, TileCounters,
+    Traffic,
+};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use super::tables;
+
+/// A JSON object whose keys keep their order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Object<T>(pub(crate) Vec<(String, T)>);
+
+impl<T: Serialize> Serialize for Object<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (key, value) in &self.0 {
+            map.serialize_entry(key, value)?;
+        }
+        map.end()
+    }
+}
+
+/// The document of `render`, and of each render of `demo`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct RenderDocument {
+    scene: String,
+    technique: &'static str,
+    params: Object<String>,
+    size: [u32; 2],
+    threads: usize,
+    tile: u32,
+    simd: &'static str,
+    skip: bool,
+    repeat: u32,
+    hash: Hashes,
+    time_ms: Times,
+    passes: Vec<PassDocument>,
+    totals: WorkDocument,
+    casters: Vec<CasterDocument>,
+    warnings: Vec<WarningDocument>,
+    files: Vec<FileDocument>,
+}
+
+/// What the scene and flags say about a render.
+#[derive(Clone, Copy)]
+pub(crate) struct RenderJob<'a> {
+    pub(crate) scene: &'a gnomon_pipeline::scene::Scene,
+    pub(crate) technique: &'static dyn Technique,
+    pub(crate) params: &'a Params,
+    pub(crate) gpu: GpuConfig,
+    pub(crate) repeat: u32,
+}
+
+/// A file that was written.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct FileDocument {
+    /// `render`, `visibility`, `report`, or the overlay's name.
+    pub(crate) kind: &'static str,
+    /// Where it is.
+    pub(crate) path: String,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Hashes {
+    color: String,
+    visibility: String,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Times {
+    frame: f64,
+    passes: Object<f64>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct PassDocument {
+    name: String,
+    #[serde(flatten)]
+    work: WorkDocument,
+}
+
+/// What a pass, or a frame, counted.
+#[derive(Clone, Debug, Default, Serialize)]
+struct WorkDocument {
+    draws: usize,
+    fragments: FragmentDocument,
+    fragment_shader_invocations: u64,
+    tiles: TileDocument,
+    primitives: PrimitiveDocument,
+    events: EventDocument,
+    traffic: Object<TrafficDocument>,
+    /// Writes of clears, by client; not part of `traffic`.
+    clear: Object<TrafficDocument>,
+}
+
+#[derive(Clone, Debug, Default, Serialize)]
+struct FragmentDocument {
+    generated: u64,
+    hiz_killed: u64,
+    bounds_failed: u64,
+    stencil_failed: u64,
+    depth_failed: u64,
+    discarded: u64,
+    written: u64,
+}
+
+#[derive(Clone, Debug, Default, Serialize)]
+struct TileDocument {
+    tested: u64,
+    culled: u64,
+    accepted: u64,
+}
+
+#[derive(Clone, Debug, Default, Serialize)]
+struct PrimitiveDocument {
+    vertex_shader_invocations: u64,
+    input: u64,
+    non_finite: u64,
+    frustum_culled: u64,
+    clipped: u64,
+    degenerate: u64,
+    face_culled: u64,
+    rasterized: u64,
+    depth_slope_limited: u64,
+}
+
+#[derive(Clone, Debug, Default, Serialize)]
+struct EventDocument {
+    silent_z_writes: u64,
+    silent_stencil_writes: u64,
+    silent_color_writes: u64,
+    blend_saturated: u64,
+    source_clamped: u64,
+    nan_canonicalised: u64,
+    depth_clamped: u64,
+}
+
+#[derive(Clone, Debug, Default, Serialize)]
+struct TrafficDocument {
+    read_accesses: u64,
+    read_bytes: u64,
+    write_accesses: u64,
+    write_bytes: u64,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct CasterDocument {
+    object: String,
+    light: usize,
+    method: &'static str,
+    light_cap_triangles: usize,
+    dark_cap_triangles: usize,
+    side_triangles: usize,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct WarningDocument {
+    code: &'static str,
+    count: usize,
+    message: String,
+}
+
+impl RenderDocument {
+    /// Describes a finished render.
+    pub(crate) fn new(job: RenderJob<'_>, done: &Rendered, files: Vec<FileDocument>) -> Self {
+        let params = job.params.iter().map(|(k, v)| (k.to_owned(), v.to_owned()));
+        Self {
+            scene: job.scene.name.clone(),
+            technique: job.technique.name(),
+            params: Object(params.collect()),
+            size: done.size,
+            threads: worker_threads(job.gpu.threads),
+            tile: job.gpu.tile,
+            simd: job.gpu.simd.name(),
+            skip: job.gpu.skip,
+            repeat: job.repeat,
+            hash: Hashes {
+                color: done.color_hash(),
+                visibility: done.visibility_hash(),
+            },
+            time_ms: Times {
+                frame: done.frame_ms,
+                passes: merged(&done.pass_ms),
+            },
+            passes: done.report.passes.iter().map(PassDocument::new).collect(),
+            totals: WorkDocument::total(&done.report),
+            casters: casters(job.scene, done),
+            warnings: done.warnings.iter().map(WarningDocument::new).collect(),
+            files,
+        }
+    }
+}
+
+/// How many threads `--threads N` stands for.
+pub(crate) fn worker_threads(asked: usize) -> usize {
+    match asked {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        n => n,
+    }
+}
+
+/// Passes of one name as one entry, since keys are unique.
+fn merged(times: &[(String, f64)]) -> Object<f64> {
+    let mut out: Vec<(String, f64)> = Vec::new();
+    for (name, ms) in times {
+        match out.iter_mut().find(|(n, _)| n == name) {
+            Some((_, sum)) => *sum += ms,
+            None => out.push((name.clone(), *ms)),
+        }
+    }
+    Object(out)
+}
+
+fn casters(scene: &gnomon_pipeline::scene::Scene, done: &Rendered) -> Vec<CasterDocument> {
+    let describe = |c: &gnomon_pipeline::technique::CasterUse| CasterDocument {
+        object: scene.objects[c.object].name.clone(),
+        light: c.light,
+        method: method_name(c.method),
+        light_cap_triangles: c.triangles[0],
+        dark_cap_triangles: c.triangles[1],
+        side_triangles: c.triangles[2],
+    };
+    done.casters.iter().map(describe).collect()
+}
+
+/// Stable names of how casters were counted.
+pub(crate) fn method_name(method: VolumeMethod) -> &'static str {
+    match method {
+        VolumeMethod::DepthPass => "zpass",
+        VolumeMethod::DepthFail => "zfail",
+        VolumeMethod::Skipped => "skipped",
+    }
+}
+
+impl PassDocument {
+    fn new(pass: &PassReport) -> Self {
+        Self {
+            name: pass.label.clone(),
+            work: WorkDocument::new(pass.draws.len(), &pass.totals(), &pass.clear),
+        }
+    }
+}
+
+impl WorkDocument {
+    fn new(draws: usize, c: &Counters, clear: &ClientTraffic) -> Self {
+        Self {
+            draws,
+            fragments: (&c.fragments).into(),
+            fragment_shader_invocations: c.fragment_shader_invocations,
+            tiles: (&c.tiles).into(),
+            primitives: (&c.primitives).into(),
+            events: (&c.events).into(),
+            traffic: traffic(c.traffic.named()),
+            clear: traffic(clear.named()),
+        }
+    }
+
+    fn total(report: &SubmitReport) -> Self {
+        let sum = tables::frame_counters(report);
+        let clear = tables::clears(report);
+        let draws = report.passes.iter().map(|p| p.draws.len()).sum();
+        Self::new(draws, &sum, &clear.traffic)
+    }
+}
+
+fn traffic(named: Vec<(String, Traffic)>) -> Object<TrafficDocument> {
+    Object(
+        named
+            .into_iter()
+            .map(|(name, t)| (name, (&t).into()))
+            .collect(),
+    )
+}
+
+impl WarningDocument {
+    fn new(warning: &Warning) -> Self {
+        Self {
+            code: warning.code,
+            count: warning.count,
+            message: warning.message.clone(),
+        }
+    }
+}
+
+impl From<&Traffic> for TrafficDocument {
+    fn from(t: &Traffic) -> Self {
+        let Traffic {
+            read_accesses,
+            read_bytes,
+            write_accesses,
+            write_bytes,
+        } = *t;
+        Self {
+            read_accesses,
+            read_bytes,
+            write_accesses,
+            write_bytes,
+        }
+    }
+}
+
+impl From<&TileCounters> for TileDocument {
+    fn from(t: &TileCounters) -> Self {
+        let TileCounters {
+            tested,
+            culled,
+            accepted,
+        } = *t;
+        Self {
+            tested,
+            culled,
+            accepted,
+        }
+    }
+}
+
+impl From<&FragmentCounters> for FragmentDocument {
+    fn from(f: &FragmentCounters) -> Self {
+        let FragmentCounters {
+            generated,
+            hiz_killed,
+            bounds_failed,
+            stencil_failed,
+            depth_failed,
+            discarded,
+            written,
+        } = *f;
+        Self {
+            generated,
+            hiz_killed,
+            bounds_failed,
+            stencil_failed,
+            depth_failed,
+            discarded,
+            written,
+        }
+    }
+}
+
+impl From<&gnomon_raster::PrimitiveCounters> for PrimitiveDocument {
+    fn from(p: &gnomon_raster::PrimitiveCounters) -> Self {
+        Self {
+            vertex_shader_invocations: p.vertex_shader_invocations,
+            input: p.input,
+            non_finite: p.non_finite,
+            frustum_culled: p.frustum_culled,
+            clipped: p.clipped,
+            degenerate: p.degenerate,
+            face_culled: p.face_culled,
+            rasterized: p.rasterized,
+            depth_slope_limited: p.depth_slope_limited,
+        }
+    }
+}
+
+impl From<&gnomon_raster::EventCounters> for EventDocument {
+    fn from(e: &gnomon_raster::EventCounters) -> Self {
+        Self {
+            silent_z_writes: e.silent_z_writes,
+            silent_stencil_writes: e.silent_stencil_writes,
+            silent_color_writes: e.silent_color_writes.iter().sum(),
+            blend_saturated: e.blend_saturated.iter().sum(),
+            source_clamped: e.source_clamped.iter().sum(),
+            nan_canonicalised: e.nan_canonicalised,
+            depth_clamped: e.depth_clamped,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_keep_their_order_and_names_are_unique() {
+        let times = [
+            ("b".to_owned(), 1.0),
+            ("a".to_owned(), 2.0),
+            ("b".to_owned(), 4.0),
+        ];
+        let text = serde_json::to_string(&merged(&times)).unwrap();
+        assert_eq!(text, r#"{"b":5.0,"a":2.0}"#);
+    }
+}

@@ -1,0 +1,41 @@
+//! What leaves the program: files, JSON, tables, progress.
+
+pub(crate) mod files;
+pub(crate) mod html;
+pub(crate) mod json;
+pub(crate) mod npy;
+pub(crate) mod numbers;
+pub(crate) mod png;
+pub(crate) mod progress;
+pub(crate) mod tables;
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use crate::error::CliError;
+
+/// Prints `text` and a line end on stdout. A reader that went away is no error.
+pub(crate) fn print(text: &str) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Stdout(e)),
+        _ => Ok(()),
+    }
+}
+
+/// Prints one JSON document on stdout.
+pub(crate) fn print_json(document: &impl Serialize) -> Result<(), CliError> {
+    let text = serde_json::to_string_pretty(document).map_err(|e| CliError::Stdout(e.into()))?;
+    print(&text)
+}
+
+/// Prints for people: on stdout, or on stderr where stdout is for JSON.
+pub(crate) fn print_summary(text: &str, json: bool) -> Result<(), CliError> {
+    if json {
+        // A summary that nobody can read is not worth failing for.
+        let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
+        return Ok(());
+    }
+    print(text)
+}

@@ -1,0 +1,35 @@
+//! NumPy's array format, version 1.0.
+
+/// A two-dimensional float32 array, row by row; `size` is (width, height).
+pub(crate) fn encode(size: [u32; 2], values: &[f32]) -> Vec<u8> {
+    let [width, height] = size;
+    let mut header =
+        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({height}, {width}), }}");
+    // Magic, version, length and header fill a multiple of 64 bytes.
+    let unpadded = PREFIX.len() + 2 + header.len() + 1;
+    header.push_str(&" ".repeat(unpadded.next_multiple_of(64) - unpadded));
+    header.push('\n');
+    let mut out = PREFIX.to_vec();
+    out.extend((header.len() as u16).to_le_bytes());
+    out.extend(header.as_bytes());
+    out.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+    out
+}
+
+const PREFIX: &[u8] = b"\x93NUMPY\x01\x00";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn header_is_aligned_and_data_follow() {
+        let file = encode([3, 2], &[0.0, 1.0, 2.0, 3.0, 4.0, f32::NAN]);
+        let length = usize::from(u16::from_le_bytes([file[8], file[9]]));
+        assert_eq!((10 + length) % 64, 0);
+        let header = std::str::from_utf8(&file[10..10 + length]).unwrap();
+        assert!(header.contains("'shape': (2, 3)") && header.ends_with('\n'));
+        assert_eq!(file.len(), 10 + length + 24);
+        assert_eq!(file[10 + length + 4..][..4], 1f32.to_le_bytes());
+    }
+}

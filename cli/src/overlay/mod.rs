@@ -1,0 +1,106 @@
+//! Pictures that explain a render, one file each.
+
+mod overdraw;
+mod sides;
+mod silhouette;
+mod stencil;
+mod traffic;
+mod volumes;
+
+use gnomon_pipeline::heat::Heat;
+use gnomon_pipeline::render::Rendered;
+use gnomon_pipeline::scene::Scene;
+use gnomon_pipeline::technique::Params;
+
+use crate::args::OverlayKind;
+use crate::draw::Picture;
+
+/// What overlays are drawn from.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) params: &'a Params,
+    pub(crate) done: &'a Rendered,
+    /// Recorded only where [`needs_heat`] says so.
+    pub(crate) heat: Option<&'a Heat>,
+}
+
+impl Source<'_> {
+    /// The rendered picture, made opaque.
+    pub(crate) fn picture(&self) -> Picture {
+        picture(self.done)
+    }
+}
+
+/// A rendered frame as an opaque picture.
+pub(crate) fn picture(done: &Rendered) -> Picture {
+    let pixels = done.srgb.iter().map(|&[r, g, b, _]| [r, g, b, 255]);
+    Picture {
+        size: done.size,
+        pixels: pixels.collect(),
+    }
+}
+
+/// Whether an overlay needs accesses to be recorded.
+pub(crate) fn needs_heat(kind: OverlayKind) -> bool {
+    matches!(kind, OverlayKind::Overdraw | OverlayKind::Traffic)
+}
+
+/// Draws an overlay.
+pub(crate) fn draw(kind: OverlayKind, source: &Source<'_>) -> Picture {
+    match kind {
+        OverlayKind::Overdraw => overdraw::draw(source),
+        OverlayKind::Stencil => stencil::draw(source),
+        OverlayKind::Traffic => traffic::draw(source),
+        OverlayKind::Silhouette => silhouette::draw(source),
+        OverlayKind::Volumes => volumes::draw(source),
+    }
+}
+
+/// Where a heat scale ends: at the value that all but one in 200 of the values
+/// above zero stay below, so that a few extremes do not darken the rest.
+fn scale_top(values: impl Iterator<Item = u64>) -> u64 {
+    let mut values: Vec<u64> = values.filter(|v| *v > 0).collect();
+    values.sort_unstable();
+    let last = values.len().saturating_sub(1);
+    values.get(last - values.len() / 200).copied().unwrap_or(1)
+}
+
+/// Five labels from 0 to `top`; the last one says when there is more.
+fn scale_labels(top: u64, max: u64, show: fn(u64) -> String) -> Vec<String> {
+    let steps = [4, 2, 1]
+        .into_iter()
+        .find(|s| top.is_multiple_of(*s) || top > 40)
+        .unwrap_or(1);
+    let mut labels: Vec<String> = (0..=steps).map(|i| show(top * i / steps)).collect();
+    if max > top {
+        let last = labels.pop().unwrap_or_default();
+        labels.push(format!(">={last}"));
+    }
+    labels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_end_at_round_places() {
+        assert_eq!(
+            scale_labels(8, 8, |n| n.to_string()),
+            ["0", "2", "4", "6", "8"]
+        );
+        assert_eq!(scale_labels(6, 9, |n| n.to_string()), ["0", "3", ">=6"]);
+        assert_eq!(scale_labels(7, 7, |n| n.to_string()), ["0", "7"]);
+    }
+
+    #[test]
+    fn a_few_extremes_do_not_set_the_scale() {
+        assert_eq!(
+            scale_top((0..1000).map(|i| if i == 7 { 9999 } else { 3 })),
+            3
+        );
+        assert_eq!(scale_top([0, 0].into_iter()), 1);
+        assert_eq!(scale_top([5].into_iter()), 5);
+    }
+}

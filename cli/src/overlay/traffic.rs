@@ -1,0 +1,45 @@
+//! Bytes read and written in each 8x8 block.
+
+use super::{Source, scale_labels, scale_top};
+use crate::draw::{Canvas, Legend, Picture, heat};
+use crate::output::numbers;
+
+pub(super) fn draw(source: &Source<'_>) -> Picture {
+    let picture = source.picture();
+    let mut canvas = Canvas::dimmed(&picture, 0.35);
+    let Some(recorded) = source.heat else {
+        return canvas.into_picture();
+    };
+    let blocks = recorded.sum(|_| true).bytes;
+    let totals: Vec<u64> = blocks.iter().map(|b| b.total()).collect();
+    let top = scale_top(totals.iter().copied());
+    let [width, height] = picture.size;
+    for y in 0..height {
+        for x in 0..width {
+            let bytes = totals[(y / 8 * recorded.blocks[0] + x / 8) as usize];
+            if bytes > 0 {
+                canvas.mix([x, y], heat(bytes as f32 / top as f32), 0.8);
+            }
+        }
+    }
+    let sum = |client: fn(&gnomon_pipeline::heat::BlockBytes) -> u64| {
+        numbers::bytes(blocks.iter().map(client).sum())
+    };
+    let legend = Legend {
+        title: "Traffic: logical bytes read and written per 8x8 block".to_owned(),
+        scale: scale_labels(
+            top,
+            totals.iter().copied().max().unwrap_or(0),
+            numbers::bytes,
+        ),
+        notes: vec![format!(
+            "z {}, stencil {}, color {}, hiz {}; vertices and clears left out",
+            sum(|b| b.z),
+            sum(|b| b.stencil),
+            sum(|b| b.color),
+            sum(|b| b.hiz)
+        )],
+        ..Legend::default()
+    };
+    legend.below(canvas, heat)
+}

@@ -1,0 +1,432 @@
+//! `gnomon demo`: the default scene, what each technique costs, and a proof
+//! that skipping and the choice of method change no bit.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use gnomon_pipeline::heat;
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{Scene, builtin};
+use gnomon_pipeline::technique::{Params, Technique, find};
+use serde::Serialize;
+
+use crate::args::{DemoArgs, OverlayKind};
+use crate::error::CliError;
+use crate::output::files::{self, Batch};
+use crate::output::html::{Figure, Report};
+use crate::output::json::{FileDocument, RenderDocument, RenderJob, worker_threads};
+use crate::output::progress::Progress;
+use crate::output::tables::{self, Named, Table};
+use crate::output::{self, numbers, png};
+use crate::overlay;
+
+const SCENE: &str = "demo";
+/// Frames timed for each entry.
+const REPEAT: u32 = 3;
+
+/// A picture of the demo: file name, technique, settings, what it shows.
+struct Entry {
+    name: &'static str,
+    technique: &'static str,
+    settings: &'static [(&'static str, &'static str)],
+    caption: &'static str,
+}
+
+const ENTRIES: &[Entry] = &[
+    Entry {
+        name: "unshadowed",
+        technique: "unshadowed",
+        settings: &[],
+        caption: "All light everywhere: what shadows are measured against",
+    },
+    Entry {
+        name: "zpass",
+        technique: "shadow-volumes",
+        settings: &[("method", "zpass")],
+        caption: "Shadow volumes counted where they pass the depth test",
+    },
+    Entry {
+        name: "zfail",
+        technique: "shadow-volumes",
+        settings: &[("method", "zfail")],
+        caption: "Counted where they fail it: right from any point of view, and dearer",
+    },
+    Entry {
+        name: "auto",
+        technique: "shadow-volumes",
+        settings: &[("method", "auto")],
+        caption: "The cheaper of the two that is right, caster by caster",
+    },
+];
+
+/// The entry that overlays are drawn over.
+const EXPLAINED: usize = 3;
+
+const OVERLAYS: &[(OverlayKind, &str)] = &[
+    (
+        OverlayKind::Silhouette,
+        "Edges between lit and unlit faces of the casters",
+    ),
+    (OverlayKind::Volumes, "The volumes that grow from them"),
+    (OverlayKind::Stencil, "How often each point is in shadow"),
+    (OverlayKind::Overdraw, "Where fragments are spent"),
+    (OverlayKind::Traffic, "Where memory bandwidth is spent"),
+];
+
+/// An entry, rendered with and without skipping.
+struct Shot {
+    entry: &'static Entry,
+    technique: &'static dyn Technique,
+    params: Params,
+    plain_params: Params,
+    done: Rendered,
+    plain: Rendered,
+}
+
+#[derive(Serialize)]
+struct DemoDocument {
+    scene: &'static str,
+    size: [u32; 2],
+    seconds: f64,
+    checks: Checks,
+    renders: Vec<RenderDocument>,
+    no_skip: Vec<RenderDocument>,
+    files: Vec<FileDocument>,
+}
+
+/// What the demo proves about itself.
+#[derive(Clone, Copy, Serialize)]
+struct Checks {
+    /// Rendering without skipping gives the same bits.
+    skipping_is_invisible: bool,
+    /// z-pass, z-fail and their mixture give the same bits.
+    methods_agree: bool,
+}
+
+/// Runs the demo.
+pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
+    let start = Instant::now();
+    files::check_target(&args.out_dir.join("report.html"))?;
+    let progress = Progress::new((ENTRIES.len() + OVERLAYS.len()) as u64);
+    progress.doing("building the scene");
+    let scene = builtin::build(SCENE).map_err(gnomon_pipeline::scene::SceneError::from)?;
+    let shots = shoot(&scene, args, &progress)?;
+    let checks = Checks::of(&shots);
+    let mut demo = Demo {
+        args,
+        scene: &scene,
+        shots: &shots,
+        batch: Batch::default(),
+        figures: Vec::new(),
+        files: Vec::new(),
+    };
+    demo.stage_pictures(&progress)?;
+    let tables = demo.tables();
+    demo.stage_report(&tables, checks)?;
+    let Demo { batch, files, .. } = demo;
+    batch.commit()?;
+    drop(progress);
+    let seconds = start.elapsed().as_secs_f64();
+    if args.json {
+        output::print_json(&document(args, &scene, &shots, checks, &files, seconds))?;
+    }
+    output::print_summary(&summary(args, &tables, checks, &files, seconds), args.json)?;
+    checks.verdict()
+}
+
+fn shoot(scene: &Scene, args: &DemoArgs, progress: &Progress) -> Result<Vec<Shot>, CliError> {
+    let mut shots = Vec::new();
+    for entry in ENTRIES {
+        progress.doing(format!("rendering {}", entry.name));
+        shots.push(Shot::new(scene, entry, args)?);
+        progress.step();
+    }
+    Ok(shots)
+}
+
+impl Shot {
+    fn new(scene: &Scene, entry: &'static Entry, args: &DemoArgs) -> Result<Self, CliError> {
+        let technique = find(entry.technique)?;
+        let given: Vec<(String, String)> = entry
+            .settings
+            .iter()
+            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+            .collect();
+        let params = super::parameters(technique, &given, args.gpu.no_skip)?;
+        let plain_params = super::parameters(technique, &given, true)?;
+        let mut settings = RenderSettings {
+            size: args.size,
+            gpu: args.gpu.config(),
+            repeat: REPEAT,
+        };
+        let done = render(scene, technique, &params, &settings)?;
+        settings.gpu.skip = false;
+        let plain = render(scene, technique, &plain_params, &settings)?;
+        Ok(Self {
+            entry,
+            technique,
+            params,
+            plain_params,
+            done,
+            plain,
+        })
+    }
+
+    fn job<'a>(&'a self, scene: &'a Scene, args: &DemoArgs, skip: bool) -> RenderJob<'a> {
+        let mut gpu = args.gpu.config();
+        gpu.skip &= skip;
+        RenderJob {
+            scene,
+            technique: self.technique,
+            params: if skip {
+                &self.params
+            } else {
+                &self.plain_params
+            },
+            gpu,
+            repeat: REPEAT,
+        }
+    }
+}
+
+/// Whether two frames are equal in every bit that they leave behind.
+fn same_bits(a: &Rendered, b: &Rendered) -> bool {
+    let bits = |v: &[f32]| v.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
+    a.srgb == b.srgb
+        && a.stencil == b.stencil
+        && bits(&a.depth) == bits(&b.depth)
+        && bits(&a.visibility) == bits(&b.visibility)
+}
+
+impl Checks {
+    fn of(shots: &[Shot]) -> Self {
+        let volumes: Vec<&Shot> = shots
+            .iter()
+            .filter(|s| s.entry.technique == "shadow-volumes")
+            .collect();
+        Self {
+            skipping_is_invisible: shots.iter().all(|s| same_bits(&s.done, &s.plain)),
+            methods_agree: volumes
+                .windows(2)
+                .all(|w| same_bits(&w[0].done, &w[1].done)),
+        }
+    }
+
+    fn lines(self) -> [String; 2] {
+        let verdict = |fine: bool| if fine { "yes" } else { "NO" };
+        [
+            format!(
+                "same bits without skipping: {}",
+                verdict(self.skipping_is_invisible)
+            ),
+            format!(
+                "z-pass, z-fail and auto agree to the bit: {}",
+                verdict(self.methods_agree)
+            ),
+        ]
+    }
+
+    fn verdict(self) -> Result<(), CliError> {
+        if self.skipping_is_invisible && self.methods_agree {
+            return Ok(());
+        }
+        Err(CliError::Check(self.lines().join("; ")))
+    }
+}
+
+/// The demo's products on their way to the folder.
+struct Demo<'a> {
+    args: &'a DemoArgs,
+    scene: &'a Scene,
+    shots: &'a [Shot],
+    batch: Batch,
+    figures: Vec<Figure>,
+    files: Vec<FileDocument>,
+}
+
+impl Demo<'_> {
+    fn stage_pictures(&mut self, progress: &Progress) -> Result<(), CliError> {
+        for shot in self.shots {
+            let bytes = png::encode(&overlay::picture(&shot.done));
+            self.stage_picture("render", shot.entry.name, shot.entry.caption, bytes)?;
+        }
+        let shot = &self.shots[EXPLAINED];
+        let settings = RenderSettings {
+            size: self.args.size,
+            gpu: self.args.gpu.config(),
+            repeat: 1,
+        };
+        let heat = heat::record(self.scene, shot.technique, &shot.params, &settings)?;
+        let source = overlay::Source {
+            scene: self.scene,
+            params: &shot.params,
+            done: &shot.done,
+            heat: Some(&heat),
+        };
+        for (kind, caption) in OVERLAYS {
+            progress.doing(format!("drawing {}", kind.name()));
+            let bytes = png::encode(&overlay::draw(*kind, &source));
+            self.stage_picture(kind.name(), kind.name(), caption, bytes)?;
+            progress.step();
+        }
+        Ok(())
+    }
+
+    fn stage_picture(
+        &mut self,
+        kind: &'static str,
+        name: &str,
+        caption: &str,
+        bytes: Vec<u8>,
+    ) -> Result<(), CliError> {
+        let path = self.args.out_dir.join(format!("{SCENE}-{name}.png"));
+        self.stage(kind, path, &bytes)?;
+        self.figures.push(Figure {
+            name: name.to_owned(),
+            caption: caption.to_owned(),
+            png: bytes,
+        });
+        Ok(())
+    }
+
+    fn stage_report(&mut self, tables: &[Table], checks: Checks) -> Result<(), CliError> {
+        let report = Report {
+            title: "gnomon demo".to_owned(),
+            lead: lead(self.args),
+            figures: &self.figures,
+            tables,
+            notes: &checks.lines(),
+        };
+        let html = report.to_html();
+        self.stage(
+            "report",
+            self.args.out_dir.join("report.html"),
+            html.as_bytes(),
+        )
+    }
+
+    fn stage(&mut self, kind: &'static str, path: PathBuf, bytes: &[u8]) -> Result<(), CliError> {
+        self.batch.stage(&path, bytes)?;
+        self.files.push(FileDocument {
+            kind,
+            path: path.display().to_string(),
+        });
+        Ok(())
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let named: Vec<Named<'_>> = self
+            .shots
+            .iter()
+            .map(|s| Named {
+                label: s.entry.name,
+                done: &s.done,
+            })
+            .collect();
+        vec![
+            tables::work(&named),
+            tables::traffic(&named),
+            skipped(self.shots),
+        ]
+    }
+}
+
+/// What skipping saved: frames with it beside frames without.
+fn skipped(shots: &[Shot]) -> Table {
+    let header = [
+        "frame",
+        "time",
+        "no skip",
+        "bytes",
+        "no skip",
+        "saved",
+        "blocks culled",
+        "hiz kill",
+        "same bits",
+    ];
+    let mut table = Table::new(
+        "What skipping saved, beside the same frames with --no-skip",
+        &header,
+    );
+    for shot in shots {
+        let (with, without) = (
+            tables::frame_bytes(&shot.done.report),
+            tables::frame_bytes(&shot.plain.report),
+        );
+        let counters = tables::frame_counters(&shot.done.report);
+        let same = same_bits(&shot.done, &shot.plain);
+        table.rows.push(vec![
+            shot.entry.name.to_owned(),
+            numbers::milliseconds(shot.done.frame_ms),
+            numbers::milliseconds(shot.plain.frame_ms),
+            numbers::bytes(with),
+            numbers::bytes(without),
+            numbers::percent(without.saturating_sub(with), without),
+            numbers::percent(counters.tiles.culled, counters.tiles.tested),
+            numbers::percent(counters.fragments.hiz_killed, counters.fragments.generated),
+            if same { "yes" } else { "NO" }.to_owned(),
+        ]);
+    }
+    table
+}
+
+fn lead(args: &DemoArgs) -> String {
+    let gpu = args.gpu.config();
+    format!(
+        "{}x{} pixels, {} threads, {}, execution tiles of {}, skipping {}; times are medians of {REPEAT} frames",
+        args.size[0],
+        args.size[1],
+        worker_threads(gpu.threads),
+        gpu.simd,
+        gpu.tile,
+        if gpu.skip { "on" } else { "off" },
+    )
+}
+
+fn document(
+    args: &DemoArgs,
+    scene: &Scene,
+    shots: &[Shot],
+    checks: Checks,
+    files: &[FileDocument],
+    seconds: f64,
+) -> DemoDocument {
+    let describe = |s: &Shot, skip: bool| {
+        RenderDocument::new(
+            s.job(scene, args, skip),
+            if skip { &s.done } else { &s.plain },
+            Vec::new(),
+        )
+    };
+    DemoDocument {
+        scene: SCENE,
+        size: args.size,
+        seconds,
+        checks,
+        renders: shots.iter().map(|s| describe(s, true)).collect(),
+        no_skip: shots.iter().map(|s| describe(s, false)).collect(),
+        files: files.to_vec(),
+    }
+}
+
+fn summary(
+    args: &DemoArgs,
+    tables: &[Table],
+    checks: Checks,
+    files: &[FileDocument],
+    seconds: f64,
+) -> String {
+    let mut text = format!("{}\n", lead(args));
+    for table in tables {
+        text += &format!("\n{}", table.to_text());
+    }
+    for line in checks.lines() {
+        text += &format!("{line}\n");
+    }
+    text += &format!(
+        "\n{} pictures and report.html are in {} ({seconds:.1} s)\n",
+        files.len() - 1,
+        args.out_dir.display()
+    );
+    text
+}

@@ -1,0 +1,230 @@
+//! `gnomon render`.
+
+use std::path::{Path, PathBuf};
+
+use gnomon_pipeline::heat::{self, Heat};
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{self, Scene};
+use gnomon_pipeline::technique::{Params, Technique, find};
+
+use crate::args::{OverlayKind, RenderArgs};
+use crate::error::CliError;
+use crate::output::files::{self, Batch};
+use crate::output::json::{FileDocument, RenderDocument, RenderJob, worker_threads};
+use crate::output::progress::Progress;
+use crate::output::tables::{self, Named};
+use crate::output::{self, npy, numbers, png};
+use crate::overlay;
+
+const DEFAULT_SIZE: [u32; 2] = [800, 600];
+
+/// Everything the command line asked for, checked.
+struct Job {
+    scene: Scene,
+    technique: &'static dyn Technique,
+    params: Params,
+    settings: RenderSettings,
+    out: PathBuf,
+    overlays: Vec<(OverlayKind, PathBuf)>,
+}
+
+/// Renders one frame and writes what was asked for.
+pub(crate) fn run(args: &RenderArgs) -> Result<(), CliError> {
+    let progress = Progress::new(3 + args.overlay.len() as u64);
+    progress.doing("loading the scene");
+    let job = Job::new(args)?;
+    progress.step();
+    progress.doing("rendering");
+    let done = render(&job.scene, job.technique, &job.params, &job.settings)?;
+    progress.step();
+    let files = write(&job, args, &done, &progress)?;
+    drop(progress);
+    if args.json {
+        let of = RenderJob {
+            scene: &job.scene,
+            technique: job.technique,
+            params: &job.params,
+            gpu: job.settings.gpu,
+            repeat: job.settings.repeat,
+        };
+        output::print_json(&RenderDocument::new(of, &done, files.clone()))?;
+    }
+    output::print_summary(&summary(&job, &done, &files), args.json)
+}
+
+impl Job {
+    fn new(args: &RenderArgs) -> Result<Self, CliError> {
+        let technique = find(&args.technique)?;
+        let params = super::parameters(technique, &args.settings, args.gpu.no_skip)?;
+        if let Some(out) = &args.out {
+            files::check_extension("--out", out, "png")?;
+        }
+        if let Some(visibility) = &args.visibility {
+            files::check_extension("--visibility", visibility, "npy")?;
+        }
+        let scene = scene::open(&args.scene)?;
+        let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
+        let out = args
+            .out
+            .clone()
+            .unwrap_or_else(|| default_out(&scene.name, technique.name()));
+        files::check_target(&out)?;
+        Ok(Self {
+            scene,
+            technique,
+            params,
+            settings: RenderSettings {
+                size,
+                gpu: args.gpu.config(),
+                repeat: args.repeat,
+            },
+            overlays: overlay_paths(&args.overlay, &out),
+            out,
+        })
+    }
+
+    fn heat(&self) -> Result<Option<Heat>, CliError> {
+        if !self
+            .overlays
+            .iter()
+            .any(|(kind, _)| overlay::needs_heat(*kind))
+        {
+            return Ok(None);
+        }
+        Ok(Some(heat::record(
+            &self.scene,
+            self.technique,
+            &self.params,
+            &self.settings,
+        )?))
+    }
+}
+
+/// `out/<scene>-<technique>.png`, with nothing in it that could leave the folder.
+fn default_out(scene: &str, technique: &str) -> PathBuf {
+    let safe = |c: char| {
+        if c.is_alphanumeric() || "-_".contains(c) {
+            c
+        } else {
+            '-'
+        }
+    };
+    let name: String = scene.chars().map(safe).collect();
+    Path::new("out").join(format!("{name}-{technique}.png"))
+}
+
+/// Each kind once, in the order asked for, beside the render.
+fn overlay_paths(kinds: &[OverlayKind], out: &Path) -> Vec<(OverlayKind, PathBuf)> {
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let mut paths: Vec<(OverlayKind, PathBuf)> = Vec::new();
+    for kind in kinds {
+        if !paths.iter().any(|(k, _)| k == kind) {
+            paths.push((
+                *kind,
+                out.with_file_name(format!("{stem}-{}.png", kind.name())),
+            ));
+        }
+    }
+    paths
+}
+
+fn write(
+    job: &Job,
+    args: &RenderArgs,
+    done: &Rendered,
+    progress: &Progress,
+) -> Result<Vec<FileDocument>, CliError> {
+    let mut batch = Batch::default();
+    let mut written = Vec::new();
+    let mut stage = |kind, path: &Path, bytes: &[u8]| {
+        written.push(FileDocument {
+            kind,
+            path: path.display().to_string(),
+        });
+        batch.stage(path, bytes)
+    };
+    progress.doing("writing");
+    stage("render", &job.out, &png::encode(&overlay::picture(done)))?;
+    if let Some(path) = &args.visibility {
+        stage(
+            "visibility",
+            path,
+            &npy::encode(done.size, &done.visibility),
+        )?;
+    }
+    progress.step();
+    let heat = job.heat()?;
+    let source = overlay::Source {
+        scene: &job.scene,
+        params: &job.params,
+        done,
+        heat: heat.as_ref(),
+    };
+    for (kind, path) in &job.overlays {
+        progress.doing(format!("drawing {}", kind.name()));
+        stage(
+            kind.name(),
+            path,
+            &png::encode(&overlay::draw(*kind, &source)),
+        )?;
+        progress.step();
+    }
+    batch.commit()?;
+    Ok(written)
+}
+
+fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
+    let settings = &job.settings;
+    let mut text = format!(
+        "{}, {}, {}x{}: {} on {} threads, {}, skipping {}\n\n",
+        job.scene.name,
+        job.technique.name(),
+        done.size[0],
+        done.size[1],
+        numbers::milliseconds(done.frame_ms),
+        worker_threads(settings.gpu.threads),
+        settings.gpu.simd,
+        if settings.gpu.skip { "on" } else { "off" },
+    );
+    let frame = [Named {
+        label: job.technique.name(),
+        done,
+    }];
+    text += &tables::work(&frame).to_text();
+    text.push('\n');
+    text += &tables::traffic(&frame).to_text();
+    text += &format!(
+        "\ncolor      {}\nvisibility {}\n",
+        done.color_hash(),
+        done.visibility_hash()
+    );
+    for warning in &done.warnings {
+        text += &format!("warning: {}: {}\n", warning.code, warning.message);
+    }
+    for file in files {
+        text += &format!("wrote {} ({})\n", file.path, file.kind);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scene_names_cannot_lead_out_of_the_folder() {
+        assert_eq!(default_out("../a b", "t"), Path::new("out/---a-b-t.png"));
+    }
+
+    #[test]
+    fn overlays_lie_beside_the_render_once_each() {
+        let paths = overlay_paths(
+            &[OverlayKind::Stencil, OverlayKind::Stencil],
+            Path::new("x/a.png"),
+        );
+        assert_eq!(
+            paths,
+            [(OverlayKind::Stencil, PathBuf::from("x/a-stencil.png"))]
+        );
+    }
+}

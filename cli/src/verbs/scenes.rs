@@ -1,0 +1,53 @@
+//! `gnomon scenes`.
+
+use gnomon_pipeline::scene::Scene;
+use gnomon_pipeline::scene::builtin::{BuiltinScene, SCENES};
+use serde::Serialize;
+
+use crate::args::ListArgs;
+use crate::error::CliError;
+use crate::output;
+
+#[derive(Serialize)]
+struct ScenesDocument {
+    scenes: Vec<SceneDocument>,
+}
+
+#[derive(Serialize)]
+struct SceneDocument {
+    name: &'static str,
+    description: &'static str,
+    triangles: usize,
+    objects: usize,
+    casters: usize,
+    lights: usize,
+}
+
+impl SceneDocument {
+    fn new(entry: &BuiltinScene) -> Self {
+        let scene: Scene = entry.build();
+        Self {
+            name: entry.name,
+            description: entry.description,
+            triangles: scene.triangle_count(),
+            objects: scene.objects.len(),
+            casters: scene.casters().count(),
+            lights: scene.lights.len(),
+        }
+    }
+}
+
+/// Lists the built-in scenes.
+pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
+    if args.json {
+        let scenes = SCENES.iter().map(SceneDocument::new).collect();
+        return output::print_json(&ScenesDocument { scenes });
+    }
+    let widest = SCENES.iter().map(|s| s.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for scene in SCENES {
+        text += &format!("{:widest$}  {}\n", scene.name, scene.description);
+    }
+    text += "\nRender one with `gnomon render NAME`; a .toml scene or an .obj model may be given instead.";
+    output::print(&text)
+}

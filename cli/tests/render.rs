@@ -1,0 +1,189 @@
+//! What `render` prints and writes.
+
+mod common;
+
+use common::Folder;
+use serde_json::Value;
+
+const KEYS: [&str; 11] = [
+    "scene",
+    "technique",
+    "params",
+    "size",
+    "threads",
+    "simd",
+    "hash",
+    "time_ms",
+    "passes",
+    "totals",
+    "warnings",
+];
+
+fn assert_keys(value: &Value, keys: &[&str]) {
+    for key in keys {
+        assert!(value.get(key).is_some(), "no {key} in {value}");
+    }
+}
+
+fn assert_work(work: &Value) {
+    assert_keys(work, &["draws", "fragments", "tiles", "traffic"]);
+    let fragments = [
+        "generated",
+        "hiz_killed",
+        "depth_failed",
+        "stencil_failed",
+        "discarded",
+        "written",
+    ];
+    assert_keys(&work["fragments"], &fragments);
+    assert_keys(&work["tiles"], &["tested", "culled", "accepted"]);
+    for client in work["traffic"].as_object().unwrap().values() {
+        assert_keys(
+            client,
+            &[
+                "read_accesses",
+                "read_bytes",
+                "write_accesses",
+                "write_bytes",
+            ],
+        );
+    }
+}
+
+#[test]
+fn json_has_the_documented_keys() {
+    let folder = Folder::new("json");
+    let doc = folder
+        .gnomon("render cylinder --size 64x48 --threads 2 --set method=zfail --json")
+        .json();
+    assert_keys(&doc, &KEYS);
+    assert_eq!(
+        (&doc["scene"], &doc["technique"]),
+        (&"cylinder".into(), &"shadow-volumes".into())
+    );
+    assert_eq!(
+        (&doc["params"]["method"], &doc["threads"]),
+        (&"zfail".into(), &2.into())
+    );
+    assert_eq!(doc["size"], serde_json::json!([64, 48]));
+    assert_keys(&doc["hash"], &["color", "visibility"]);
+    assert!(doc["time_ms"]["frame"].as_f64().unwrap() > 0.0);
+    let passes = doc["passes"].as_array().unwrap();
+    assert!(!passes.is_empty());
+    for pass in passes {
+        assert!(doc["time_ms"]["passes"][pass["name"].as_str().unwrap()].is_number());
+        assert_work(pass);
+    }
+    assert_work(&doc["totals"]);
+    let sum: u64 = passes
+        .iter()
+        .map(|p| p["fragments"]["generated"].as_u64().unwrap())
+        .sum();
+    assert_eq!(doc["totals"]["fragments"]["generated"].as_u64(), Some(sum));
+}
+
+#[test]
+fn summaries_go_to_stderr_with_json_and_to_stdout_without() {
+    let folder = Folder::new("streams");
+    let run = folder.gnomon("render cylinder --size 32x32 --json").fine();
+    assert!(run.stdout().starts_with('{') && run.stderr().contains("volumes"));
+    let run = folder.gnomon("render cylinder --size 32x32").fine();
+    assert!(
+        run.stdout().contains("volumes") && run.stderr().is_empty(),
+        "{}",
+        run.stderr()
+    );
+    assert!(
+        run.stdout().lines().all(|l| l.chars().count() <= 100),
+        "{}",
+        run.stdout()
+    );
+    assert_eq!(folder.names(), ["out"]);
+    assert!(folder.path("out/cylinder-shadow-volumes.png").is_file());
+}
+
+/// Reads a float32 array of two dimensions as NumPy would.
+fn read_npy(bytes: &[u8]) -> ((usize, usize), Vec<f32>) {
+    assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
+    let data = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let header = std::str::from_utf8(&bytes[10..data]).unwrap();
+    assert!(
+        header.contains("'descr': '<f4'") && header.contains("'fortran_order': False"),
+        "{header}"
+    );
+    let shape = header
+        .split_once("'shape': (")
+        .unwrap()
+        .1
+        .split_once(')')
+        .unwrap()
+        .0;
+    let (height, width) = shape.split_once(", ").unwrap();
+    let floats = bytes[data..]
+        .chunks_exact(4)
+        .map(|c| f32::from_le_bytes(c.try_into().unwrap()));
+    (
+        (height.parse().unwrap(), width.parse().unwrap()),
+        floats.collect(),
+    )
+}
+
+#[test]
+fn visibility_is_a_float_array() {
+    let folder = Folder::new("npy");
+    folder
+        .gnomon("render peer-a --size 64x48 --out a.png --visibility a.npy")
+        .fine();
+    let (shape, values) = read_npy(&std::fs::read(folder.path("a.npy")).unwrap());
+    assert_eq!((shape, values.len()), ((48, 64), 64 * 48));
+    assert!(values.iter().all(|v| v.is_nan() || *v == 0.0 || *v == 1.0));
+    for wanted in [0.0, 1.0] {
+        assert!(values.contains(&wanted), "no pixel of {wanted}");
+    }
+    assert!(values[0].is_nan(), "the sky has no surface");
+}
+
+#[test]
+fn pictures_have_the_size_asked_for() {
+    let folder = Folder::new("overlays");
+    let all = "overdraw,stencil,traffic,silhouette,volumes";
+    let doc = folder
+        .gnomon(&format!(
+            "render cylinder --size 33x17 --out a.png --overlay {all} --json"
+        ))
+        .json();
+    assert_eq!(folder.names().len(), 6);
+    assert_eq!(doc["files"].as_array().unwrap().len(), 6);
+    let render = image::open(folder.path("a.png")).unwrap();
+    assert_eq!((render.width(), render.height()), (33, 17));
+    for name in all.split(',') {
+        let overlay = image::open(folder.path(&format!("a-{name}.png"))).unwrap();
+        assert!(overlay.width() >= 280 && overlay.height() > 17, "{name}");
+    }
+}
+
+#[test]
+fn one_pixel_is_a_picture() {
+    let folder = Folder::new("pixel");
+    let all = "--overlay overdraw,stencil,traffic,silhouette,volumes";
+    folder
+        .gnomon(&format!("render cylinder --size 1x1 --out a.png {all}"))
+        .fine();
+}
+
+#[test]
+fn scene_files_and_models_are_rendered() {
+    let folder = Folder::new("files");
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    folder.write("cube.obj", cube);
+    let doc = folder.gnomon("render cube.obj --size 40x30 --json").json();
+    assert_eq!(doc["scene"], "cube");
+    let head =
+        "name = \"two/../words\"\nsize = [24, 16]\n[camera]\neye = [0, 2, 5]\ntarget = [0, 0, 0]\n";
+    let rest = "[[lights]]\nshape.point = { position = [1, 4, 1] }\n[[objects]]\nmesh.box = { size = [1, 1, 1] }\n";
+    folder.write("box.toml", &format!("{head}{rest}"));
+    let doc = folder.gnomon("render box.toml --json").json();
+    assert_eq!(doc["size"], serde_json::json!([24, 16]));
+    assert!(folder.path("out/two----words-shadow-volumes.png").is_file());
+}

@@ -1,0 +1,66 @@
+//! The same bits and counters for every way to execute.
+
+mod common;
+
+use common::Folder;
+use serde_json::Value;
+
+fn render(folder: &Folder, flags: &str) -> Value {
+    folder
+        .gnomon(&format!(
+            "render demo --size 96x64 --out a.png --json {flags}"
+        ))
+        .json()
+}
+
+#[test]
+fn hashes_and_counters_do_not_depend_on_execution() {
+    let folder = Folder::new("execution");
+    let reference = render(&folder, "--threads 1 --tile 64 --simd scalar");
+    for flags in [
+        "--threads 3",
+        "--tile 16",
+        "--tile 128 --threads 2",
+        "--simd auto --tile 32",
+        "--repeat 2",
+    ] {
+        let other = render(&folder, flags);
+        for key in ["hash", "passes", "totals", "casters", "warnings"] {
+            assert_eq!(other[key], reference[key], "{flags}: {key}");
+        }
+    }
+}
+
+#[test]
+fn skipping_changes_counters_but_no_bit() {
+    let folder = Folder::new("skipping");
+    for method in ["zpass", "zfail", "auto"] {
+        let set = format!("--set method={method}");
+        let (with, without) = (
+            render(&folder, &set),
+            render(&folder, &format!("{set} --no-skip")),
+        );
+        assert_eq!(with["hash"], without["hash"], "{method}");
+        assert_eq!(without["totals"]["fragments"]["hiz_killed"], 0);
+        assert_eq!(
+            (&without["skip"], &without["params"]["skip"]),
+            (&false.into(), &"off".into())
+        );
+        assert_ne!(
+            with["totals"]["traffic"]["z"], without["totals"]["traffic"]["z"],
+            "{method}"
+        );
+    }
+}
+
+#[test]
+fn techniques_differ() {
+    let folder = Folder::new("techniques");
+    let shadowed = render(&folder, "");
+    let unshadowed = render(&folder, "--technique unshadowed");
+    assert_ne!(shadowed["hash"]["color"], unshadowed["hash"]["color"]);
+    assert_ne!(
+        shadowed["hash"]["visibility"],
+        unshadowed["hash"]["visibility"]
+    );
+}

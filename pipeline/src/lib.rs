@@ -27,6 +27,23 @@
 //! assert_eq!(volume.sides().len(), 2 * 66); // two triangles per silhouette edge
 //! # Ok::<(), gnomon_pipeline::error::UnknownScene>(())
 //! ```
+//!
+//! A [`technique`] turns a scene into commands for the emulated GPU, and
+//! [`render`] runs them:
+//!
+//! ```
+//! use gnomon_pipeline::render::{self, RenderSettings};
+//! use gnomon_pipeline::{scene::builtin, technique};
+//!
+//! let scene = builtin::build("cylinder")?;
+//! let shadows = technique::find("shadow-volumes")?;
+//! let params = technique::Params::parse(shadows, ["method=zfail"])?;
+//! let settings = RenderSettings { size: [64, 48], ..RenderSettings::default() };
+//! let picture = render::render(&scene, shadows, &params, &settings)?;
+//! let shadowed = picture.visibility.iter().filter(|v| **v == 0.0).count();
+//! assert!((100..400).contains(&shadowed), "{shadowed} pixels in shadow");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod adjacency;
 pub mod caster;

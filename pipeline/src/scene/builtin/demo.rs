@@ -23,7 +23,7 @@ pub(super) fn scene() -> Scene {
 
 fn objects() -> Vec<Object> {
     let creature = shape::placed_creature(1.1, 0.45, DVec3::new(-1.3, 0.0, 1.3));
-    let knot = shape::torus_knot(2, 3, 0.5, 0.2, 0.1, 256, 20, DVec3::new(0.7, 1.25, 0.4));
+    let knot = shape::torus_knot(2, 3, 0.56, 0.14, 0.085, 256, 20, DVec3::new(0.7, 1.2, 0.4));
     vec![
         solid("ground", shape::plane(30.0, 0.0), FLOOR).receiver_only(),
         solid("columns", columns(), STONE),

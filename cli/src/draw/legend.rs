@@ -8,7 +8,7 @@ const TEXT: [u8; 3] = [232, 234, 237];
 const QUIET: [u8; 3] = [154, 160, 168];
 /// Distances in font pixels.
 const MARGIN: u32 = 6;
-const LINE: u32 = 11;
+const LINE: u32 = 12;
 const BOX: u32 = 8;
 
 /// A colour and what it stands for.
@@ -35,9 +35,8 @@ impl Swatch {
 pub(crate) struct Legend {
     /// What the picture shows.
     pub(crate) title: String,
-    /// Labels along a scale from the least to the greatest value, evenly spaced;
-    /// no scale when empty.
-    pub(crate) scale: Vec<String>,
+    /// Places along a scale, 0 to 1, with their labels; no scale when empty.
+    pub(crate) scale: Vec<(f32, String)>,
     /// Colours with their meanings, wrapped to the width.
     pub(crate) swatches: Vec<Swatch>,
     /// Further lines.
@@ -87,7 +86,7 @@ impl Legend {
 
 enum Line<'a> {
     Title(String),
-    Scale(&'a [String]),
+    Scale(&'a [(f32, String)]),
     Swatches(&'a [Swatch]),
     Note(String),
 }
@@ -129,7 +128,7 @@ impl Pen<'_> {
         );
     }
 
-    fn scale_bar(&mut self, labels: &[String]) {
+    fn scale_bar(&mut self, labels: &[(f32, String)]) {
         let left = MARGIN * self.scale;
         let length = self.width - 2 * left;
         for x in 0..length {
@@ -138,9 +137,8 @@ impl Pen<'_> {
             self.canvas
                 .fill_rect(at, [1.0, (BOX * self.scale) as f32], colour);
         }
-        let gaps = (labels.len() - 1).max(1) as u32;
-        for (i, label) in labels.iter().enumerate() {
-            self.tick(left + (length - 1) * i as u32 / gaps, label);
+        for (place, label) in labels {
+            self.tick(left + ((length - 1) as f32 * place) as u32, label);
         }
     }
 
@@ -219,7 +217,7 @@ mod tests {
     fn a_picture_of_one_pixel_gets_a_readable_legend() {
         let legend = Legend {
             title: "a title that is longer than the picture is wide by very much indeed".to_owned(),
-            scale: vec!["0".to_owned(), "1".to_owned()],
+            scale: vec![(0.0, "0".to_owned()), (1.0, "1".to_owned())],
             swatches: (0..30)
                 .map(|i| Swatch::new([i; 3], format!("value {i}")))
                 .collect(),

@@ -21,12 +21,16 @@ pub(crate) fn milliseconds(ms: f64) -> String {
     }
 }
 
-/// `part` of `whole` in per cent; `-` of nothing.
+/// `part` of `whole` in per cent; `-` of nothing, `<1%` of little.
 pub(crate) fn percent(part: u64, whole: u64) -> String {
     if whole == 0 {
         return "-".to_owned();
     }
-    format!("{:.0}%", 100.0 * part as f64 / whole as f64)
+    let percent = 100.0 * part as f64 / whole as f64;
+    if part > 0 && percent < 0.5 {
+        return "<1%".to_owned();
+    }
+    format!("{percent:.0}%")
 }
 
 fn scaled(n: u64, units: &[&str]) -> String {

@@ -1,6 +1,8 @@
 //! Tables of what frames and passes cost, for terminals and for the report.
 
-use comfy_table::{CellAlignment, ContentArrangement, Table as TerminalTable, presets};
+use comfy_table::{
+    CellAlignment, ContentArrangement, Table as TerminalTable, TableComponent, presets,
+};
 use gnomon_pipeline::render::Rendered;
 use gnomon_raster::{ClientTraffic, Counters, SubmitReport, Traffic};
 
@@ -30,6 +32,10 @@ impl Table {
         let mut table = TerminalTable::new();
         table
             .load_preset(presets::UTF8_HORIZONTAL_ONLY)
+            .remove_style(TableComponent::HorizontalLines)
+            .remove_style(TableComponent::MiddleIntersections)
+            .remove_style(TableComponent::LeftBorderIntersections)
+            .remove_style(TableComponent::RightBorderIntersections)
             .set_content_arrangement(ContentArrangement::Disabled);
         table.set_header(&self.header);
         for row in &self.rows {

@@ -66,16 +66,23 @@ fn scale_top(values: impl Iterator<Item = u64>) -> u64 {
     values.get(last - values.len() / 200).copied().unwrap_or(1)
 }
 
-/// Five labels from 0 to `top`; the last one says when there is more.
-fn scale_labels(top: u64, max: u64, show: fn(u64) -> String) -> Vec<String> {
-    let steps = [4, 2, 1]
-        .into_iter()
-        .find(|s| top.is_multiple_of(*s) || top > 40)
-        .unwrap_or(1);
-    let mut labels: Vec<String> = (0..=steps).map(|i| show(top * i / steps)).collect();
-    if max > top {
-        let last = labels.pop().unwrap_or_default();
-        labels.push(format!(">={last}"));
+/// Place of a value on a heat scale. The square root leaves room for the small
+/// values, which are the many.
+fn place(value: u64, top: u64) -> f32 {
+    (value as f32 / top.max(1) as f32).sqrt()
+}
+
+/// Labels about evenly along the scale from 0 to `top`; the last one says when
+/// there is more.
+fn scale_labels(top: u64, max: u64, show: fn(u64) -> String) -> Vec<(f32, String)> {
+    let mut values: Vec<u64> = [0, 1, 4, 9, 16].map(|n| (top * n + 8) / 16).to_vec();
+    values.dedup();
+    let mut labels: Vec<(f32, String)> =
+        values.iter().map(|v| (place(*v, top), show(*v))).collect();
+    if max > top
+        && let Some((_, last)) = labels.last_mut()
+    {
+        last.insert_str(0, ">=");
     }
     labels
 }
@@ -85,13 +92,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scales_end_at_round_places() {
-        assert_eq!(
-            scale_labels(8, 8, |n| n.to_string()),
-            ["0", "2", "4", "6", "8"]
-        );
-        assert_eq!(scale_labels(6, 9, |n| n.to_string()), ["0", "3", ">=6"]);
-        assert_eq!(scale_labels(7, 7, |n| n.to_string()), ["0", "7"]);
+    fn scales_have_whole_numbers_at_their_places() {
+        let texts = |top, max| -> Vec<String> {
+            scale_labels(top, max, |n| n.to_string())
+                .into_iter()
+                .map(|(_, text)| text)
+                .collect()
+        };
+        assert_eq!(texts(16, 16), ["0", "1", "4", "9", "16"]);
+        assert_eq!(texts(3, 9), ["0", "1", "2", ">=3"]);
+        assert_eq!(texts(1, 1), ["0", "1"]);
+        let places: Vec<f32> = scale_labels(64, 64, |n| n.to_string())
+            .into_iter()
+            .map(|(p, _)| p)
+            .collect();
+        assert_eq!(places, [0.0, 0.25, 0.5, 0.75, 1.0]);
     }
 
     #[test]

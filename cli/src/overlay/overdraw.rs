@@ -1,6 +1,6 @@
 //! Fragments generated at each pixel.
 
-use super::{Source, scale_labels, scale_top};
+use super::{Source, place, scale_labels, scale_top};
 use crate::draw::{Canvas, Legend, Picture, heat};
 
 pub(super) fn draw(source: &Source<'_>) -> Picture {
@@ -14,7 +14,7 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
     let width = picture.size[0] as usize;
     for (i, &n) in counts.iter().enumerate().filter(|(_, n)| **n > 0) {
         let at = [(i % width) as u32, (i / width) as u32];
-        canvas.mix(at, heat(n as f32 / top as f32), 0.85);
+        canvas.mix(at, heat(place(u64::from(n), top)), 0.85);
     }
     let max = u64::from(counts.iter().copied().max().unwrap_or(0));
     let sum: u64 = counts.iter().map(|c| u64::from(*c)).sum();

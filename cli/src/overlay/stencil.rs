@@ -40,8 +40,13 @@ fn colour(value: i8) -> [u8; 3] {
         [235, 235, 235],
     ];
     match value {
-        1..=8 => COUNTS[value as usize - 1],
-        9.. => heat(0.15 + 0.85 * f32::from(value - 9) / 118.0),
+        // Eight colours over and over, a little paler each time.
+        1.. => {
+            let i = value as usize - 1;
+            let pale = (i / COUNTS.len()) as f32 / 20.0;
+            COUNTS[i % COUNTS.len()]
+                .map(|c| (f32::from(c) * (1.0 - pale) + 255.0 * pale).round() as u8)
+        }
         // Miscounts of z-pass: they should leap to the eye.
         _ => [255, (-(i16::from(value) + 1)).min(15) as u8 * 10, 90],
     }
@@ -56,15 +61,18 @@ fn present(pixels: &[u64; 256]) -> Vec<i8> {
 
 fn swatches(pixels: &[u64; 256]) -> Vec<Swatch> {
     let total = pixels.iter().sum();
+    let count = |v: i8| pixels[usize::from(v as u8)];
+    let mut shown = present(pixels);
+    shown.sort_by_key(|v| std::cmp::Reverse(count(*v)));
+    shown.truncate(SHOWN);
+    shown.sort_unstable();
     let swatch = |v: i8| {
-        let n = pixels[usize::from(v as u8)];
-        Swatch::new(colour(v), format!("{v}: {}", numbers::percent(n, total)))
+        Swatch::new(
+            colour(v),
+            format!("{v}: {}", numbers::percent(count(v), total)),
+        )
     };
-    present(pixels)
-        .into_iter()
-        .take(SHOWN)
-        .map(swatch)
-        .collect()
+    shown.into_iter().map(swatch).collect()
 }
 
 fn notes(pixels: &[u64; 256]) -> Vec<String> {
@@ -73,11 +81,12 @@ fn notes(pixels: &[u64; 256]) -> Vec<String> {
     if values.is_empty() {
         notes.push("every pixel is 0".to_owned());
     }
-    if values.len() > SHOWN {
+    if let [first, .., last] = values[..]
+        && values.len() > SHOWN
+    {
+        let rarer = values.len() - SHOWN;
         notes.push(format!(
-            "and {} more values, up to {}",
-            values.len() - SHOWN,
-            values[values.len() - 1]
+            "and {rarer} rarer values; all are between {first} and {last}"
         ));
     }
     if values.iter().any(|v| *v < 0) {
@@ -92,7 +101,7 @@ mod tests {
 
     #[test]
     fn neighbouring_values_differ_in_colour() {
-        for v in i8::MIN..8 {
+        for v in i8::MIN..i8::MAX {
             assert!(
                 v == 0 || v + 1 == 0 || v < -16 || colour(v) != colour(v + 1),
                 "{v}"

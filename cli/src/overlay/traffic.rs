@@ -1,6 +1,6 @@
 //! Bytes read and written in each 8x8 block.
 
-use super::{Source, scale_labels, scale_top};
+use super::{Source, place, scale_labels, scale_top};
 use crate::draw::{Canvas, Legend, Picture, heat};
 use crate::output::numbers;
 
@@ -18,7 +18,7 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
         for x in 0..width {
             let bytes = totals[(y / 8 * recorded.blocks[0] + x / 8) as usize];
             if bytes > 0 {
-                canvas.mix([x, y], heat(bytes as f32 / top as f32), 0.8);
+                canvas.mix([x, y], heat(place(bytes, top)), 0.8);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Fill-rate microbenchmarks: the cases of the peers' `gl_fill_rate.py`, with
 //! counting on. Prints million fragments and triangles per second.
 //!
-//! `fill_rate [--threads N] [--simd LEVEL] [--tile N] [--budget SECONDS] [--case NAME] [--json FILE]`
+//! `fill_rate [--threads N] [--simd LEVEL] [--tile N] [--budget SECONDS] [--case NAME] [--mesh large|small] [--json FILE]`
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 
@@ -200,7 +200,7 @@ impl Bench {
 fn main() {
     let mut config = GpuConfig::default();
     let mut budget = 0.5;
-    let mut only = String::new();
+    let (mut only, mut only_mesh) = (String::new(), String::new());
     let mut json = None;
     let args: Vec<String> = std::env::args().skip(1).collect();
     for pair in args.chunks(2) {
@@ -211,6 +211,7 @@ fn main() {
             "--simd" => config.simd = value.parse().expect("a level"),
             "--budget" => budget = value.parse().expect("seconds"),
             "--case" => only.clone_from(value),
+            "--mesh" => only_mesh.clone_from(value),
             "--json" => json = Some(value.clone()),
             _ => panic!("unknown option {key}"),
         }
@@ -225,7 +226,7 @@ fn main() {
     let meshes = meshes.map(|(n, (v, i), layers)| (n, (Arc::new(v), Arc::new(i)), layers));
     let mut rows = String::new();
     for case in cases().iter().filter(|c| only.is_empty() || only == c.name) {
-        for (name, mesh, layers) in &meshes {
+        for (name, mesh, layers) in meshes.iter().filter(|m| only_mesh.is_empty() || only_mesh == m.0) {
             let (seconds, fragments, triangles) = bench.measure(case, mesh, *layers);
             let (mf, mt) = (fragments as f64 / seconds / 1e6, triangles as f64 / seconds / 1e6);
             println!("{:<14} {name:<5} {mf:9.1} Mfragment/s  {mt:8.3} Mtriangle/s  {:8.3} ms", case.name, seconds * 1e3);

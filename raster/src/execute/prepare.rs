@@ -111,15 +111,11 @@ fn draw_config<'a>(
         bounds: ds.depth.bounds.map(|b| b.map(|v| encode_depth(encoding, v))),
         depth_range: [ends[0].min(ends[1]), ends[0].max(ends[1])],
         depth_reversed: ends[0] > ends[1],
-        depth_clamp: draw.pipeline.primitive.depth_clamp,
         hiz: gpu.config.skip && depth_tested && ds.depth.bounds.is_none() && !outputs.depth,
-        plain: draw.pipeline.primitive.depth_clamp
-            && draw.pipeline.primitive.clip_planes.is_empty()
-            && ds.depth.bounds.is_none(),
+        plain: draw.pipeline.primitive.clip_planes.is_empty() && ds.depth.bounds.is_none(),
         needs_depth: depth_tested
             || (attached && ds.depth.write)
-            || shader.is_some()
-            || !draw.pipeline.primitive.depth_clamp,
+            || shader.is_some(),
         stencil: [
             face(ds.stencil.front, draw.stencil_reference[0]),
             face(ds.stencil.back, draw.stencil_reference[1]),

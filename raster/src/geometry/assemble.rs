@@ -3,7 +3,7 @@
 use super::bin::{Bins, TileGrid};
 use super::clip::{self, ClipVertex};
 use super::setup::{self, Piece, Triangle};
-use super::shade::{NON_FINITE, PLANE_MASK, ScreenVertex, ShadedVertices, VIEW_MASK, W_NOT_POSITIVE, project_one};
+use super::shade::{BEYOND_FAR, NON_FINITE, PLANE_MASK, ScreenVertex, ShadedVertices, VIEW_MASK, W_NOT_POSITIVE, project_one};
 use super::{GeometryState, widen};
 use crate::MAX_VARYINGS;
 use crate::counters::PrimitiveCounters;
@@ -91,6 +91,11 @@ fn is_usable(s: &ScreenVertex) -> bool {
     s.x.abs() <= COORDINATE_LIMIT && s.y.abs() <= COORDINATE_LIMIT && s.z.is_finite()
 }
 
+/// Whether a vertex lies beyond the far plane.
+fn is_beyond_far(v: &ClipVertex) -> bool {
+    v.position[2] > v.position[3]
+}
+
 struct Assembler<'a> {
     level: SimdLevel,
     input: &'a ChunkInput<'a>,
@@ -128,7 +133,8 @@ impl Assembler<'_> {
             self.chunk.counters.frustum_culled += 1;
             return;
         }
-        self.push(Piece { v, primitive: self.input.first_primitive + p, piece: 0, widened: false });
+        let far = any & BEYOND_FAR != 0;
+        self.push(Piece { v, primitive: self.input.first_primitive + p, piece: 0, widened: false, far });
     }
 
     fn unusual_triangle(&mut self, p: u32, v: [u32; 3], any: u16, all: u16) {
@@ -189,6 +195,7 @@ impl Assembler<'_> {
                 primitive: self.input.first_primitive + p,
                 piece: k as u16 - 1,
                 widened: false,
+                far: [0, k, k + 1].into_iter().any(|i| is_beyond_far(&poly[i])),
             });
         }
     }
@@ -244,9 +251,10 @@ impl Assembler<'_> {
 
     fn push_quad(&mut self, p: u32, corners: [ScreenVertex; 4], values: [&ClipVertex; 4]) {
         let [a, b, c, d] = core::array::from_fn(|k| self.push_own(values[k], corners[k]));
+        let far = values.iter().any(|v| is_beyond_far(v));
         for (piece, v) in [[a, b, c], [a, c, d]].into_iter().enumerate() {
             let primitive = self.input.first_primitive + p;
-            self.push(Piece { v, primitive, piece: piece as u16, widened: true });
+            self.push(Piece { v, primitive, piece: piece as u16, widened: true, far });
         }
     }
 

@@ -13,6 +13,8 @@ pub(crate) struct Piece {
     pub(crate) piece: u16,
     /// Part of a line or point: front-facing whatever its winding.
     pub(crate) widened: bool,
+    /// A corner lies beyond the far plane.
+    pub(crate) far: bool,
 }
 
 /// D24 depth planes carry this many fractional bits.
@@ -50,6 +52,8 @@ pub(crate) struct Triangle {
     pub(crate) primitive: u32,
     pub(crate) piece: u16,
     pub(crate) front: bool,
+    /// Pixels beyond the far end must be cut off.
+    pub(crate) far: bool,
 }
 
 const _: () = assert!(core::mem::size_of::<Triangle>() == 128);
@@ -125,7 +129,7 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, piece
     let edges = Edges::new(l, &q, negative);
     let depth = DepthPlanes::new(l, state, &q, chunk, alive);
     let bounds = pixel_bounds(&q);
-    emit(chunk, pieces, alive, front.bits(), &edges, &depth, &bounds, &q);
+    emit(chunk, pieces, alive, front.bits(), &edges, &depth, &bounds, &q, state.depth_clamp);
 }
 
 fn facing_to_cull(state: &GeometryState, front: u16) -> u16 {
@@ -289,6 +293,7 @@ fn emit<L: Lanes>(
     d: &DepthPlanes,
     bounds: &[[i32; LANES]; 4],
     q: &Corners<L>,
+    depth_clamp: bool,
 ) {
     let (x, y, z) = (q.x[0].to_array(), q.y[0].to_array(), q.z[0].to_array());
     let mut left = alive;
@@ -311,6 +316,7 @@ fn emit<L: Lanes>(
             primitive: pieces[i].primitive,
             piece: pieces[i].piece,
             front: front >> i & 1 != 0,
+            far: pieces[i].far && !depth_clamp,
         });
     }
 }

@@ -20,6 +20,8 @@ pub(super) const VIEW_SHIFT: u32 = clip::PLANES as u32;
 pub(super) const VIEW_MASK: u16 = 0xf << VIEW_SHIFT;
 pub(super) const W_NOT_POSITIVE: u16 = 1 << 11;
 pub(super) const NON_FINITE: u16 = 1 << 12;
+/// z > w.
+pub(super) const BEYOND_FAR: u16 = 1 << 13;
 pub(super) const PLANE_MASK: u16 = (1 << clip::PLANES) - 1;
 
 /// Shaded vertices of one draw and instance, or a part of them.
@@ -146,7 +148,7 @@ fn clip_codes<L: Lanes>(l: L, state: &GeometryState, p: &[F32<L>; 4]) -> [u16; L
         wd * guard[3] - yd,
     ];
     let zero = F64::splat(l, 0.0);
-    let mut bits = [0u16; 13];
+    let mut bits = [0u16; 14];
     for (b, d) in bits.iter_mut().zip(distances) {
         *b = d.lt(zero).bits();
     }
@@ -155,12 +157,13 @@ fn clip_codes<L: Lanes>(l: L, state: &GeometryState, p: &[F32<L>; 4]) -> [u16; L
     }
     bits[11] = w_bad.bits();
     bits[12] = !all_finite.bits();
+    bits[13] = z.gt(w).bits();
     transpose(&bits)
 }
 
 /// Bit `k` of `codes[lane]` = bit `lane` of `bits[k]`.
 #[inline(always)]
-fn transpose(bits: &[u16; 13]) -> [u16; LANES] {
+fn transpose(bits: &[u16; 14]) -> [u16; LANES] {
     if bits.iter().all(|&b| b == 0) {
         return [0; LANES];
     }

@@ -200,7 +200,7 @@ fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
 ) {
     let config = env.config;
     let face = if t.front { &config.stencil[0] } else { &config.stencil[1] };
-    if !R::ON && config.plain && config.shader.is_none() && config.attached {
+    if !R::ON && config.plain && !t.far && config.shader.is_none() && config.attached {
         return outlined(
             l,
             #[inline(always)]
@@ -208,7 +208,7 @@ fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
         );
     }
     let mut mask = covered;
-    if !config.plain {
+    if !config.plain || t.far {
         mask &= outlined(
             l,
             #[inline(always)]
@@ -232,10 +232,10 @@ fn visible<L: Lanes, const D24: bool>(
     place: Place,
 ) -> u64 {
     let c = env.config;
-    let near = if c.depth_clamp {
-        u64::MAX
-    } else {
+    let near = if t.far {
         DepthBlock::<D24>::not_beyond_far(l, t, place.x, place.y, c.depth_range, c.depth_reversed)
+    } else {
+        u64::MAX
     };
     near & shade::inside_clip_planes(l, env, t, place)
 }

@@ -89,11 +89,9 @@ pub(crate) struct DrawConfig<'a> {
     pub(crate) depth_range: [i32; 2],
     /// The viewport's min depth is above its max depth.
     pub(crate) depth_reversed: bool,
-    pub(crate) depth_clamp: bool,
     /// zmin/zmax tests apply.
     pub(crate) hiz: bool,
-    /// Coverage alone says which fragments there are: no clip planes, no far
-    /// clipping, no depth bounds.
+    /// No clip planes and no depth bounds.
     pub(crate) plain: bool,
     /// Fragment depth is looked at by anything.
     pub(crate) needs_depth: bool,

@@ -261,7 +261,7 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
     }
     let face = if t.front { &env.config.stencil[0] } else { &env.config.stencil[1] };
     let mut left = alive;
-    if !R::ON && env.config.plain {
+    if !R::ON && env.config.plain && !t.far {
         left &= !block::run_group(l, env, face, first, full, &decided);
     }
     let bases = depth.map(

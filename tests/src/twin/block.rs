@@ -108,6 +108,7 @@ impl Block<'_> {
 
     fn generated(&mut self) -> Vec<Fragment> {
         let clamp = self.ctx.draw.primitive.depth_clamp;
+        let reaches_far = self.tri.triangle.corners.iter().any(|c| c.vertex.position[2] > c.vertex.position[3]);
         let mut list = Vec::new();
         for (k, (x, y)) in self.pixels().into_iter().enumerate() {
             let inside = self.in_image((x, y)) && self.ctx.rect.contains(x, y);
@@ -116,7 +117,7 @@ impl Block<'_> {
                 continue;
             }
             let (depth, beyond_far) = self.tri.depth.at(x, y);
-            if clamp || !beyond_far {
+            if clamp || !reaches_far || !beyond_far {
                 self.access.covered |= 1 << k;
                 list.push(Fragment {
                     x,

@@ -225,7 +225,7 @@ mod tests {
         };
         let picture = legend.below(Canvas::new([1, 1], [9; 3]), heat);
         assert_eq!(picture.size[0], 280);
-        assert_eq!(picture.pixels[140], [9, 9, 9, 255]);
+        assert_eq!(picture.pixels[139], [9, 9, 9, 255]);
         assert_eq!(
             picture.pixels.len(),
             (picture.size[0] * picture.size[1]) as usize

@@ -12,10 +12,11 @@ const STOPS: [[f32; 3]; 7] = [
     [252.0, 255.0, 164.0],
 ];
 
-/// The colour of `amount` in 0..=1; values outside are limited.
+/// The colour of `amount` in 0..=1; values outside are limited, NaN is 0.
 pub(crate) fn heat(amount: f32) -> [u8; 3] {
     let last = STOPS.len() - 1;
-    let place = amount.clamp(0.0, 1.0) * last as f32;
+    let amount = if amount > 0.0 { amount.min(1.0) } else { 0.0 };
+    let place = amount * last as f32;
     let below = (place as usize).min(last - 1);
     let part = place - below as f32;
     let mix = |c: usize| STOPS[below][c] * (1.0 - part) + STOPS[below + 1][c] * part;

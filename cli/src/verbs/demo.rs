@@ -122,7 +122,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     };
     demo.stage_pictures(&progress)?;
     let tables = demo.tables();
-    demo.stage_report(&tables, checks)?;
+    let notes: Vec<String> = checks.lines().into_iter().chain(warnings(&shots)).collect();
+    demo.stage_report(&tables, &notes)?;
     let Demo { batch, files, .. } = demo;
     batch.commit()?;
     drop(progress);
@@ -130,7 +131,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     if args.json {
         output::print_json(&document(args, &scene, &shots, checks, &files, seconds))?;
     }
-    output::print_summary(&summary(args, &tables, checks, &files, seconds), args.json)?;
+    output::print_summary(&summary(args, &tables, &notes, &files, seconds), args.json)?;
     checks.verdict()
 }
 
@@ -289,13 +290,13 @@ impl Demo<'_> {
         Ok(())
     }
 
-    fn stage_report(&mut self, tables: &[Table], checks: Checks) -> Result<(), CliError> {
+    fn stage_report(&mut self, tables: &[Table], notes: &[String]) -> Result<(), CliError> {
         let report = Report {
             title: "gnomon demo".to_owned(),
             lead: lead(self.args),
             figures: &self.figures,
             tables,
-            notes: &checks.lines(),
+            notes,
         };
         let html = report.to_html();
         self.stage(
@@ -383,6 +384,15 @@ fn lead(args: &DemoArgs) -> String {
     )
 }
 
+/// Every frame's warnings.
+fn warnings(shots: &[Shot]) -> impl Iterator<Item = String> {
+    shots.iter().flat_map(|shot| {
+        let name = shot.entry.name;
+        let warnings = shot.done.warnings.iter();
+        warnings.map(move |w| format!("warning: {name}: {}: {}", w.code, w.message))
+    })
+}
+
 fn document(
     args: &DemoArgs,
     scene: &Scene,
@@ -412,7 +422,7 @@ fn document(
 fn summary(
     args: &DemoArgs,
     tables: &[Table],
-    checks: Checks,
+    notes: &[String],
     files: &[FileDocument],
     seconds: f64,
 ) -> String {
@@ -420,7 +430,7 @@ fn summary(
     for table in tables {
         text += &format!("\n{}", table.to_text());
     }
-    for line in checks.lines() {
+    for line in notes {
         text += &format!("{line}\n");
     }
     text += &format!(

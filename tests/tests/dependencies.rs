@@ -1,0 +1,244 @@
+//! The shape of the workspace: which crate may need which, and what none may do.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use toml::{Table, Value};
+
+/// Crate, its folder, and the workspace crates that it may need.
+/// Dependency goes one way: raster ← shaders ← pipeline ← cli, raster ← traces ← cli.
+const LAYERS: &[(&str, &str, &[&str])] = &[
+    ("gnomon-raster", "raster", &[]),
+    ("gnomon-shaders", "shaders-rs", &["gnomon-raster"]),
+    (
+        "gnomon-pipeline",
+        "pipeline",
+        &["gnomon-raster", "gnomon-shaders"],
+    ),
+    ("gnomon-traces", "traces", &["gnomon-raster"]),
+    (
+        "gnomon",
+        "cli",
+        &[
+            "gnomon-raster",
+            "gnomon-shaders",
+            "gnomon-pipeline",
+            "gnomon-traces",
+        ],
+    ),
+    (
+        "gnomon-tests",
+        "tests",
+        &[
+            "gnomon-raster",
+            "gnomon-shaders",
+            "gnomon-pipeline",
+            "gnomon-traces",
+        ],
+    ),
+];
+
+/// Everything that the GPU needs. A new line is a decision; files, formats of
+/// files and serialisation are none of its business.
+const RASTER_NEEDS: &[&str] = &["bytemuck", "fearless_simd", "half", "rayon", "thiserror"];
+
+/// What draws, prints or encodes stays in the command line.
+const REPORTING: &[&str] = &[
+    "clap",
+    "comfy-table",
+    "image",
+    "indicatif",
+    "serde_json",
+    "tiny-skia",
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn manifest(folder: &str) -> Table {
+    let path = root().join(folder).join("Cargo.toml");
+    let text = read(&path);
+    text.parse()
+        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn members() -> Vec<String> {
+    let workspace = manifest("");
+    let members = workspace["workspace"]["members"].as_array();
+    let text = |v: &Value| v.as_str().expect("a folder").to_owned();
+    members.expect("a list").iter().map(text).collect()
+}
+
+fn package(manifest: &Table) -> &str {
+    manifest["package"]["name"].as_str().expect("a name")
+}
+
+/// Names under `[dependencies]` and `[build-dependencies]`, of targets too.
+fn needs(manifest: &Table) -> Vec<String> {
+    let targets = manifest.get("target").and_then(Value::as_table);
+    let of_targets = targets
+        .into_iter()
+        .flatten()
+        .filter_map(|(_, t)| t.as_table());
+    let tables = std::iter::once(manifest).chain(of_targets);
+    let kinds = tables.flat_map(|t| {
+        ["dependencies", "build-dependencies"].map(|k| t.get(k).and_then(Value::as_table))
+    });
+    let entries = kinds.flatten().flatten();
+    entries
+        .map(|(key, value)| {
+            let renamed = value.get("package").and_then(Value::as_str);
+            renamed.unwrap_or(key).to_owned()
+        })
+        .collect()
+}
+
+/// Files of Rust below `folder`.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    for entry in entries {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Lines below `folder` whose code, comments left out, is one to find.
+fn lines_where(folder: &Path, wanted: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut found = Vec::new();
+    for path in sources(folder) {
+        for (number, line) in read(&path).lines().enumerate() {
+            let code = line.split("//").next().unwrap_or_default();
+            if wanted(code) {
+                found.push(format!(
+                    "{}:{}: {}",
+                    path.display(),
+                    number + 1,
+                    line.trim()
+                ));
+            }
+        }
+    }
+    found
+}
+
+fn lines_with(folder: &Path, words: &[&str]) -> Vec<String> {
+    lines_where(folder, |code| words.iter().any(|w| code.contains(w)))
+}
+
+#[test]
+fn dependency_goes_one_way() {
+    for folder in members() {
+        let manifest = manifest(&folder);
+        let name = package(&manifest);
+        let layer = LAYERS.iter().find(|(n, ..)| *n == name);
+        let (_, home, allowed) = layer.unwrap_or_else(|| panic!("{name} has no layer here"));
+        assert_eq!(folder, *home, "the folder of {name}");
+        for need in needs(&manifest) {
+            let ours = LAYERS.iter().any(|(n, ..)| *n == need);
+            assert!(
+                !ours || allowed.contains(&need.as_str()),
+                "{name} needs {need}; of the workspace it may need {allowed:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_gpu_needs_what_is_listed_and_no_more() {
+    assert_eq!(needs(&manifest("raster")), RASTER_NEEDS);
+}
+
+#[test]
+fn reporting_stays_in_the_command_line() {
+    for folder in ["raster", "shaders-rs", "pipeline"] {
+        let needs = needs(&manifest(folder));
+        let found: Vec<_> = needs
+            .iter()
+            .filter(|n| REPORTING.contains(&n.as_str()))
+            .collect();
+        assert!(found.is_empty(), "{folder} needs {found:?}");
+    }
+}
+
+#[test]
+fn the_gpu_touches_nothing_outside() {
+    let found = lines_with(
+        &root().join("raster/src"),
+        &[
+            "std::fs",
+            "std::io",
+            "std::net",
+            "std::env",
+            "std::process",
+            "println!",
+        ],
+    );
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn techniques_touch_no_thread_clock_or_file() {
+    let words = [
+        "std::fs",
+        "std::io",
+        "std::env",
+        "std::thread",
+        "std::time",
+        "rayon",
+    ];
+    for folder in ["pipeline/src/techniques", "shaders-rs/src"] {
+        let found = lines_with(&root().join(folder), &words);
+        assert!(found.is_empty(), "{found:#?}");
+    }
+}
+
+#[test]
+fn every_crate_is_under_the_lints_of_the_workspace() {
+    let workspace = manifest("");
+    let lint = workspace["workspace"]["lints"]["rust"]["unsafe_code"].as_str();
+    assert!(matches!(lint, Some("deny" | "forbid")), "{lint:?}");
+    for folder in members() {
+        let manifest = manifest(&folder);
+        let inherited = manifest.get("lints").and_then(|l| l.get("workspace"));
+        assert_eq!(
+            inherited,
+            Some(&Value::Boolean(true)),
+            "{folder}/Cargo.toml"
+        );
+    }
+}
+
+/// The lint can be allowed line by line; nobody does.
+#[test]
+fn there_is_no_unsafe_code() {
+    let keyword = concat!("un", "safe");
+    let uses_it = |code: &str| {
+        let mut words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
+        words.any(|w| w == keyword)
+    };
+    for folder in members() {
+        let found = lines_where(&root().join(folder), uses_it);
+        assert!(found.is_empty(), "{found:#?}");
+    }
+}
+
+/// With `scalar-math` glam has one arithmetic on every target; its SIMD types,
+/// which do not, are aligned to 16 bytes.
+#[test]
+fn glam_is_scalar() {
+    assert_eq!(align_of::<glam::Vec4>(), 4);
+    assert_eq!(align_of::<glam::Quat>(), 4);
+    assert_eq!(align_of::<glam::Mat4>(), 4);
+}

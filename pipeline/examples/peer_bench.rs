@@ -11,9 +11,12 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
+use gnomon_pipeline::adjacency::EdgeAdjacency;
 use gnomon_pipeline::scene::{Material, Scene, builtin};
 use gnomon_pipeline::technique::{self, Params};
+use gnomon_pipeline::volume::ShadowVolume;
 use gnomon_raster::{CommandList, Gpu, GpuConfig, SubmitReport, Subresource};
+use sha2::{Digest, Sha256};
 
 struct Options {
     config: GpuConfig,
@@ -141,14 +144,40 @@ fn measure_scene(
     let mut row = String::new();
     write!(
         row,
-        r#"{{"driver":"gnomon","simd":"{}","threads":{threads},"scene":"{}","size":{size},"frame":{},"volume":{},"fragments":{fragments},"depth_fail":{failed},"mfrag_s":{rate},"shadowed_pixels":{shadowed},"stencil_max":{most},"volume_triangles":{}}}"#,
+        r#"{{"driver":"gnomon","simd":"{}","threads":{threads},"scene":"{}","size":{size},"frame":{},"volume":{},"fragments":{fragments},"depth_fail":{failed},"mfrag_s":{rate},"shadowed_pixels":{shadowed},"stencil_max":{most},"volume_triangles":{},"digests":{:?}}}"#,
         options.config.simd,
         name.to_uppercase(),
         whole.json(),
         pass.json(),
-        counted.primitives.input
+        counted.primitives.input,
+        digests(scene)
     )?;
     Ok(row)
+}
+
+/// Of receiver, caster and volume, as the peers' `scenes.py` makes them.
+fn digests(scene: &Scene) -> [String; 3] {
+    let [receiver, caster] = [0, 1].map(|i| &*scene.objects[i].mesh);
+    let adjacency = EdgeAdjacency::new(caster.triangles());
+    let volume = ShadowVolume::of_closed(caster, &adjacency, scene.lights[0].hard());
+    [
+        digest(receiver.positions(), receiver.triangles()),
+        digest(caster.positions(), caster.triangles()),
+        digest(volume.positions(), volume.triangles()),
+    ]
+}
+
+/// First 16 hex digits of SHA-256 over vertices, then indices, little endian.
+fn digest<const N: usize>(vertices: &[[f32; N]], triangles: &[[u32; 3]]) -> String {
+    let mut hash = Sha256::new();
+    for x in vertices.iter().flatten() {
+        hash.update(x.to_le_bytes());
+    }
+    for i in triangles.iter().flatten() {
+        hash.update(i.to_le_bytes());
+    }
+    let bytes = hash.finalize();
+    bytes[..8].iter().map(|b| format!("{b:02x}")).collect()
 }
 
 /// Times of `timed` in milliseconds, each after an untimed `before`.

@@ -208,11 +208,6 @@ fn event_warnings(report: &SubmitReport) -> Vec<Warning> {
             total.primitives.non_finite,
             "primitives have vertices that are not finite in clip space and were dropped",
         ),
-        (
-            "depth-slope-limited",
-            total.primitives.depth_slope_limited,
-            "triangles are steeper than the D24 set-up can follow; their depth is flattened",
-        ),
     ];
     let warning = |(code, count, what): (&'static str, u64, &str)| Warning {
         code,

@@ -79,8 +79,9 @@ pub struct PrimitiveCounters {
     pub face_culled: u64,
     /// Triangles set up for rasterisation.
     pub rasterized: u64,
-    /// Triangles whose D24 slope exceeded the set-up's range and was limited.
-    pub depth_slope_limited: u64,
+    /// Triangles whose D24 slope exceeds the fixed-point range, so that their depth
+    /// is computed in doubles.
+    pub steep_depth_planes: u64,
 }
 
 /// Fragments, by the stage that ended them. `generated` is the sum of all others.
@@ -219,7 +220,7 @@ impl Counters {
             $( self.$f.$g.iter_mut().zip(o.$f.$g).for_each(|(a, b)| *a += b); )+
         }; }
         sum!(primitives: vertex_shader_invocations, input, non_finite, frustum_culled, clipped, degenerate);
-        sum!(primitives: face_culled, rasterized, depth_slope_limited);
+        sum!(primitives: face_culled, rasterized, steep_depth_planes);
         sum!(fragments: generated, hiz_killed, bounds_failed, stencil_failed, depth_failed, discarded, written);
         sum!(tiles: tested, culled, accepted);
         sum!(events: silent_z_writes, silent_stencil_writes, nan_canonicalised, depth_clamped);

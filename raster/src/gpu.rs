@@ -6,6 +6,7 @@ use crate::command::CommandList;
 use crate::counters::{ClientTraffic, Counters};
 use crate::error::Error;
 use crate::execute;
+use crate::geometry::{Chunk, ShadedVertices};
 use crate::observer::AccessObserver;
 use crate::simd::SimdLevel;
 use crate::texture::{Texture, TextureDescriptor, TextureId};
@@ -35,6 +36,15 @@ pub struct Gpu {
     pub(crate) config: GpuConfig,
     pub(crate) pool: Option<rayon::ThreadPool>,
     pub(crate) textures: Vec<Texture>,
+    /// Memory of past batches, so that no frame has to ask the system for it again.
+    pub(crate) recycled: Recycled,
+}
+
+/// Buffers that wait for the next batch.
+#[derive(Default)]
+pub(crate) struct Recycled {
+    pub(crate) chunks: Vec<Chunk>,
+    pub(crate) shaded: Vec<ShadedVertices>,
 }
 
 /// What a draw counted.
@@ -93,7 +103,7 @@ impl Gpu {
             1 => None,
             n => Some(execute::start_pool(n)?),
         };
-        Ok(Self { config, pool, textures: Vec::new() })
+        Ok(Self { config, pool, textures: Vec::new(), recycled: Recycled::default() })
     }
 
     /// How it executes.

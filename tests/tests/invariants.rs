@@ -24,7 +24,7 @@ fn assert_conserved(c: &Counters, what: &str) {
         p.input - p.non_finite - p.frustum_culled <= ends,
         "{what}: {p:?}"
     );
-    assert!(p.depth_slope_limited <= p.rasterized, "{what}: {p:?}");
+    assert!(p.steep_depth_planes <= p.rasterized, "{what}: {p:?}");
     assert!(
         c.tiles.culled + c.tiles.accepted <= c.tiles.tested,
         "{what}: {:?}",

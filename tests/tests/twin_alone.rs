@@ -50,7 +50,7 @@ fn random_cases_reach_every_counter() {
         .collect();
     // Fixed-function traffic has no textures, and nothing writes vertices or indices.
     assert!(
-        sum.tiles.accepted > 0 && sum.tiles.culled > 0 && sum.primitives.depth_slope_limited > 0,
+        sum.tiles.accepted > 0 && sum.tiles.culled > 0 && sum.primitives.steep_depth_planes > 0,
         "{zero:?}"
     );
     assert!(

@@ -126,7 +126,7 @@ struct PrimitiveDocument {
     degenerate: u64,
     face_culled: u64,
     rasterized: u64,
-    depth_slope_limited: u64,
+    steep_depth_planes: u64,
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
@@ -353,7 +353,7 @@ impl From<&gnomon_raster::PrimitiveCounters> for PrimitiveDocument {
             degenerate: p.degenerate,
             face_culled: p.face_culled,
             rasterized: p.rasterized,
-            depth_slope_limited: p.depth_slope_limited,
+            steep_depth_planes: p.steep_depth_planes,
         }
     }
 }

@@ -65,7 +65,8 @@ impl Ray {
         }
         let normal = (b - a).cross(c - a);
         let slope = normal.dot(self.direction);
-        (slope != 0.0).then(|| normal.dot(a) / slope)
+        // Adding 0 makes −0 into 0: a crossing at the origin is one number.
+        (slope != 0.0).then(|| normal.dot(a) / slope + 0.0)
     }
 
     /// Where the parallel to the ray through `v` (relative to the origin)

@@ -7,7 +7,7 @@ use super::split::{self, Fill, Lent};
 use crate::command::{Draw, Referenced, RenderPass};
 use crate::counters::{AccessSizes, Counters, Traffic};
 use crate::geometry::{Chunk, ChunkInput, ShadedVertices, TileGrid, process_chunk, shade_part};
-use crate::gpu::{DrawReport, Gpu, PassReport};
+use crate::gpu::{DrawReport, Gpu, PassReport, Recycled};
 use crate::observer::BlockAccess;
 use crate::shader::VertexBatch;
 use crate::tile::{ChunkRef, DrawWork, Recorder, Scratch, Silent, TileTarget, run_tile};
@@ -22,12 +22,14 @@ const BATCH: u32 = 64 * CHUNK;
 /// Executes a validated pass. Accesses go to `accesses` where it is given.
 pub(super) fn execute(gpu: &mut Gpu, pass: &RenderPass, accesses: Option<&mut Vec<BlockAccess>>) -> PassReport {
     let mut lent = split::lend(gpu, pass);
+    let mut recycled = core::mem::take(&mut gpu.recycled);
     let pool = gpu.pool.take();
-    let run = || Executor::new(gpu, pass, &mut lent).run(accesses);
+    let run = || Executor::new(gpu, pass, &mut lent, &mut recycled).run(accesses);
     let counters = match &pool {
         Some(pool) => pool.install(run),
         None => run(),
     };
+    gpu.recycled = recycled;
     let clear = split::clear_traffic(pass, &lent);
     split::give_back(gpu, pass, lent);
     gpu.pool = pool;
@@ -64,14 +66,15 @@ struct Executor<'a> {
     pass: &'a RenderPass,
     lent: &'a mut Lent,
     prepared: Vec<Prepared<'a>>,
+    recycled: &'a mut Recycled,
     parallel: bool,
 }
 
 impl<'a> Executor<'a> {
-    fn new(gpu: &'a Gpu, pass: &'a RenderPass, lent: &'a mut Lent) -> Self {
+    fn new(gpu: &'a Gpu, pass: &'a RenderPass, lent: &'a mut Lent, recycled: &'a mut Recycled) -> Self {
         let target = Target { width: lent.layout.width, height: lent.layout.height, sizes: lent.sizes };
         let prepared = pass.draws.iter().map(|d| prepare(gpu, &target, d)).collect();
-        Self { gpu, pass, lent, prepared, parallel: gpu.config.threads != 1 }
+        Self { gpu, pass, lent, prepared, recycled, parallel: gpu.config.threads != 1 }
     }
 
     fn run(mut self, accesses: Option<&mut Vec<BlockAccess>>) -> Vec<Counters> {
@@ -92,6 +95,8 @@ impl<'a> Executor<'a> {
             let before = (b == 0).then_some(&fills.0);
             let after = (b == last).then_some(&fills.1);
             self.tiles(&units, jobs, &shaded, &chunks, before, after, &mut counters, recorded.as_deref_mut());
+            self.recycled.chunks.extend(chunks);
+            self.recycled.shaded.extend(shaded);
         }
         if let Some(r) = recorded {
             r.par_sort_unstable_by_key(|a| (a.draw, a.primitive, a.piece, a.block[1], a.block[0]));
@@ -124,8 +129,11 @@ impl<'a> Executor<'a> {
     }
 
     /// Shades the vertices of the units of `jobs`; others stay empty.
-    fn shade(&self, units: &[Unit<'_>], jobs: &[Job]) -> Vec<ShadedVertices> {
-        let mut shaded: Vec<ShadedVertices> = units.iter().map(|_| ShadedVertices::default()).collect();
+    fn shade(&mut self, units: &[Unit<'_>], jobs: &[Job]) -> Vec<ShadedVertices> {
+        let mut old = core::mem::take(&mut self.recycled.shaded);
+        let mut shaded: Vec<ShadedVertices> = units.iter().map(|_| old.pop().unwrap_or_default()).collect();
+        shaded.iter_mut().for_each(ShadedVertices::clear);
+        self.recycled.shaded = old;
         let mut work = Vec::new();
         let mut rest = &mut shaded[..];
         let mut offset = 0;
@@ -160,9 +168,12 @@ impl<'a> Executor<'a> {
         shaded
     }
 
-    fn chunks(&self, units: &[Unit<'_>], jobs: &[Job], shaded: &[ShadedVertices]) -> Vec<Chunk> {
+    fn chunks(&mut self, units: &[Unit<'_>], jobs: &[Job], shaded: &[ShadedVertices]) -> Vec<Chunk> {
         let grid = self.grid();
-        let one = |job: &Job| {
+        let mut old = core::mem::take(&mut self.recycled.chunks);
+        self.recycled.chunks = old.split_off(jobs.len().min(old.len()));
+        old.resize_with(jobs.len(), Chunk::default);
+        let one = |(job, old): (&Job, Chunk)| {
             let unit = &units[job.unit];
             let p = &self.prepared[unit.draw];
             let per = p.geometry.topology.vertices();
@@ -176,12 +187,12 @@ impl<'a> Executor<'a> {
                 primitives: job.primitives,
                 first_primitive: unit.first_primitive + job.first,
             };
-            process_chunk(self.gpu.config.simd, &input, &grid)
+            process_chunk(self.gpu.config.simd, &input, &grid, old)
         };
         if self.parallel && jobs.len() > 1 {
-            jobs.par_iter().map(one).collect()
+            jobs.par_iter().zip(old).map(one).collect()
         } else {
-            jobs.iter().map(one).collect()
+            jobs.iter().zip(old).map(one).collect()
         }
     }
 

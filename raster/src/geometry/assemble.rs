@@ -63,12 +63,17 @@ impl Chunk {
     }
 }
 
-/// Assembles, clips, sets up and bins the primitives of `input`.
-pub(crate) fn process_chunk(level: SimdLevel, input: &ChunkInput<'_>, grid: &TileGrid) -> Chunk {
+/// Assembles, clips, sets up and bins the primitives of `input`, in the memory of
+/// an old chunk.
+pub(crate) fn process_chunk(level: SimdLevel, input: &ChunkInput<'_>, grid: &TileGrid, old: Chunk) -> Chunk {
+    let mut chunk = old;
+    chunk.triangles.clear();
+    chunk.own.clear();
+    chunk.counters = PrimitiveCounters::default();
     let mut a = Assembler {
         level,
         input,
-        chunk: Chunk::default(),
+        chunk,
         queue: Vec::with_capacity(LANES),
         poly: Vec::new(),
         spare: Vec::new(),
@@ -82,7 +87,7 @@ pub(crate) fn process_chunk(level: SimdLevel, input: &ChunkInput<'_>, grid: &Til
     }
     a.flush();
     let mut chunk = a.chunk;
-    chunk.bins = Bins::build(level, &chunk.triangles, input.state.rect, grid);
+    chunk.bins.rebuild(&chunk.triangles, input.state.rect, grid);
     chunk
 }
 

@@ -1,7 +1,6 @@
 //! Sorting triangles into execution tiles.
 
 use super::setup::Triangle;
-use crate::simd::SimdLevel;
 
 /// The execution tiles of a render target.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +27,9 @@ pub(crate) struct Bins {
     /// `starts[t]..starts[t + 1]` of `triangles` belong to tile t.
     starts: Vec<u32>,
     triangles: Vec<u32>,
+    /// Memory of the sort.
+    pairs: Vec<(u32, u32)>,
+    next: Vec<u32>,
 }
 
 impl Bins {
@@ -40,31 +42,32 @@ impl Bins {
         &self.triangles[self.starts[t] as usize..self.starts[t + 1] as usize]
     }
 
-    pub(super) fn build(_level: SimdLevel, triangles: &[Triangle], rect: [i32; 4], grid: &TileGrid) -> Self {
-        let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(triangles.len() + triangles.len() / 4);
+    /// Sorts `triangles` anew.
+    pub(super) fn rebuild(&mut self, triangles: &[Triangle], rect: [i32; 4], grid: &TileGrid) {
+        self.pairs.clear();
         for (i, t) in triangles.iter().enumerate() {
-            for_each_tile(t, rect, grid, |tile| pairs.push((tile, i as u32)));
+            for_each_tile(t, rect, grid, |tile| self.pairs.push((tile, i as u32)));
         }
-        Self::sort(&pairs, grid.tiles())
+        self.sort(grid.tiles());
     }
 
-    /// Stable counting sort by tile.
-    fn sort(pairs: &[(u32, u32)], tiles: usize) -> Self {
-        let mut starts = vec![0u32; tiles + 1];
-        for &(tile, _) in pairs {
-            starts[tile as usize + 1] += 1;
+    /// Stable counting sort of the pairs by tile.
+    fn sort(&mut self, tiles: usize) {
+        self.starts.clear();
+        self.starts.resize(tiles + 1, 0);
+        for &(tile, _) in &self.pairs {
+            self.starts[tile as usize + 1] += 1;
         }
         for t in 0..tiles {
-            starts[t + 1] += starts[t];
+            self.starts[t + 1] += self.starts[t];
         }
-        let mut next = starts.clone();
-        let mut triangles = vec![0u32; pairs.len()];
-        for &(tile, i) in pairs {
-            let n = &mut next[tile as usize];
-            triangles[*n as usize] = i;
+        self.next.clone_from(&self.starts);
+        self.triangles.resize(self.pairs.len(), 0);
+        for &(tile, i) in &self.pairs {
+            let n = &mut self.next[tile as usize];
+            self.triangles[*n as usize] = i;
             *n += 1;
         }
-        Self { starts, triangles }
     }
 }
 

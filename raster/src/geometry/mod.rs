@@ -14,7 +14,7 @@ mod shade;
 mod widen;
 
 pub(crate) use assemble::{Chunk, ChunkInput, process_chunk};
-pub(crate) use bin::{Bins, TileGrid};
+pub(crate) use bin::TileGrid;
 pub(crate) use setup::{D24_BASE_LIMIT, D24_FRACTION, D24_SCALE, Triangle};
 pub(crate) use shade::{ScreenVertex, ShadedVertices, shade_part};
 

@@ -54,6 +54,8 @@ pub(crate) struct Triangle {
     pub(crate) front: bool,
     /// Pixels beyond the far end must be cut off.
     pub(crate) far: bool,
+    /// D24 slopes are beyond fixed point: depth is computed in doubles.
+    pub(crate) steep: bool,
 }
 
 const _: () = assert!(core::mem::size_of::<Triangle>() == 128);
@@ -127,8 +129,9 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, piece
         return;
     }
     let edges = Edges::new(l, &q, negative);
-    let depth = DepthPlanes::new(l, state, &q, chunk, alive);
+    let depth = DepthPlanes::new(state, &q, chunk, alive);
     let bounds = pixel_bounds(&q);
+    let alive = alive & !covers_nothing(l, &edges, &bounds);
     emit(chunk, pieces, alive, front.bits(), &edges, &depth, &bounds, &q, state.depth_clamp);
 }
 
@@ -177,43 +180,77 @@ impl Edges {
     }
 }
 
+/// Triangles whose bounds hold no pixel centre, or at most 2×2 of which none is
+/// covered: nothing downstream could see them.
+#[inline(always)]
+fn covers_nothing<L: Lanes>(l: L, e: &Edges, bounds: &[[i32; LANES]; 4]) -> u16 {
+    let b = [
+        I32::from_array(l, &bounds[0]),
+        I32::from_array(l, &bounds[1]),
+        I32::from_array(l, &bounds[2]),
+        I32::from_array(l, &bounds[3]),
+    ];
+    let one = I32::splat(l, 1);
+    let empty = b[0].gt(b[2]).bits() | b[1].gt(b[3]).bits();
+    let tiny = ((b[2] - b[0]).le(one) & (b[3] - b[1]).le(one)).bits();
+    if tiny == 0 {
+        return empty;
+    }
+    let (x, y) = (F64::from_f32(b[0].to_f32()), F64::from_f32(b[1].to_f32()));
+    let mut outside = [I32::splat(l, 0); 4];
+    for k in 0..3 {
+        let (dx, dy) = (I32::from_array(l, &e.dx[k]), I32::from_array(l, &e.dy[k]));
+        let at = F64::from_array(l, &e.c[k]) + (F64::from_f32(dx.to_f32()) * y - F64::from_f32(dy.to_f32()) * x);
+        let v = at.round_to_i32(EDGE_LIMIT);
+        outside[0] = outside[0] | v;
+        outside[1] = outside[1] | (v - dy);
+        outside[2] = outside[2] | (v + dx);
+        outside[3] = outside[3] | ((v + dx) - dy);
+    }
+    let none = outside[0] & outside[1] & outside[2] & outside[3];
+    empty | (tiny & none.lt(I32::splat(l, 0)).bits())
+}
+
+/// Edge values are limited to this before they become 32-bit integers; their sign
+/// is all that matters.
+const EDGE_LIMIT: f64 = 1_073_741_824.0;
+
 struct DepthPlanes {
     zx: [f64; LANES],
     zy: [f64; LANES],
     bias: [f64; LANES],
     slope: [[i32; LANES]; 2],
+    steep: u16,
 }
 
 impl DepthPlanes {
     #[inline(always)]
-    fn new<L: Lanes>(l: L, state: &GeometryState, q: &Corners<L>, chunk: &mut Chunk, alive: u16) -> Self {
+    fn new<L: Lanes>(state: &GeometryState, q: &Corners<L>, chunk: &mut Chunk, alive: u16) -> Self {
         let (gx, gy) = gradients(q, &q.z);
+        let mut steep = 0;
         let slope = match state.encoding {
             DepthEncoding::D24 => {
                 let (sx, sy) = (gx * D24_SCALE, gy * D24_SCALE);
-                let limited = beyond(sx) | beyond(sy);
-                chunk.counters.depth_slope_limited += u64::from((limited & alive).count_ones());
+                steep = (beyond(sx) | beyond(sy)) & alive;
+                chunk.counters.steep_depth_planes += u64::from(steep.count_ones());
                 [sx.round_to_i32(D24_SLOPE_LIMIT).to_array(), sy.round_to_i32(D24_SLOPE_LIMIT).to_array()]
             }
             DepthEncoding::Float => {
                 [gx.to_f32().to_bits().to_i32().to_array(), gy.to_f32().to_bits().to_i32().to_array()]
             }
         };
-        let _ = l;
         let (zx, zy) = (gx.to_array(), gy.to_array());
-        Self { zx, zy, bias: biases(state, &zx, &zy, q), slope }
+        Self { zx, zy, bias: biases(state, &zx, &zy, q), slope, steep }
     }
 }
 
 /// Lanes whose D24 slope rounds to more than the limit.
 #[inline(always)]
 fn beyond<L: Lanes>(s: F64<L>) -> u16 {
-    let a = s.to_array();
-    let mut m = 0;
-    for (i, v) in a.iter().enumerate() {
-        m |= u16::from(v.round_ties_even().abs() > D24_SLOPE_LIMIT) << i;
-    }
-    m
+    // The limit is even: halves above it round down to it.
+    let limit = F64::splat(s.lanes(), D24_SLOPE_LIMIT + 0.5);
+    let below = F64::splat(s.lanes(), -(D24_SLOPE_LIMIT + 0.5));
+    limit.lt(s).bits() | s.lt(below).bits()
 }
 
 /// `a − b` of snapped coordinates, in pixels.
@@ -317,6 +354,7 @@ fn emit<L: Lanes>(
             piece: pieces[i].piece,
             front: front >> i & 1 != 0,
             far: pieces[i].far && !depth_clamp,
+            steep: d.steep >> i & 1 != 0,
         });
     }
 }

@@ -49,6 +49,15 @@ impl ShadedVertices {
         core::array::from_fn(|c| self.clip[c][vertex as usize])
     }
 
+    /// Empties it and keeps its memory.
+    pub(crate) fn clear(&mut self) {
+        self.clip.iter_mut().for_each(Vec::clear);
+        self.varyings.clear();
+        self.screen.clear();
+        self.codes.clear();
+        self.padded = 0;
+    }
+
     /// Room for `n` vertices, rounded up to whole packets.
     pub(crate) fn resize(&mut self, n: usize, varyings: usize) {
         self.padded = n.next_multiple_of(LANES);
@@ -128,7 +137,9 @@ fn project<L: Lanes>(l: L, state: &GeometryState, out: &mut ShadedPart<'_>) {
 fn clip_codes<L: Lanes>(l: L, state: &GeometryState, p: &[F32<L>; 4]) -> [u16; LANES] {
     let [x, y, z, w] = *p;
     let zero = F32::splat(l, 0.0);
-    let all_finite = (x - x).eq(zero) & (y - y).eq(zero) & (z - z).eq(zero) & (w - w).eq(zero);
+    // Infinity and NaN times 0 are NaN.
+    let all_finite =
+        (x * 0.0).eq(zero) & (y * 0.0).eq(zero) & (z * 0.0).eq(zero) & (w * 0.0).eq(zero);
     let outside = [x.gt(w), x.lt(-w), y.gt(w), y.lt(-w)];
     let w_bad = w.le(zero);
 

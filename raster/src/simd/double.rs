@@ -57,6 +57,11 @@ impl<L: Lanes> F64<L> {
     }
 
     #[inline(always)]
+    pub(crate) fn lanes(self) -> L {
+        self.l
+    }
+
+    #[inline(always)]
     pub(crate) fn floor(self) -> Self {
         Self { lo: self.lo.floor(), hi: self.hi.floor(), l: self.l }
     }

@@ -216,7 +216,7 @@ fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
         );
     }
     if mask != 0 {
-        let access = fragments(l, env, t, face, place, plane, decision, mask);
+        let access = fragments(l, env, t, face, place, plane, decision, mask, R::ON);
         if R::ON {
             record(env, recorder, t, place, access);
         }
@@ -255,23 +255,39 @@ fn count_or_write<L: Lanes, const D24: bool>(
     let config = env.config;
     count(&mut env.counters.fragments.generated, mask);
     let Some(decision) = consult(l, env, face, place, plane, decision, mask) else { return };
+    let passed = match face.counts {
+        Some(steps) => counting_tests(l, env, place, plane, decision, steps, mask),
+        None => {
+            let depths = Depths::Plane(*plane);
+            tests::<L, D24>(l, env, place, face, &depths, decision, mask, &mut BlockAccess::default())
+        }
+    };
+    count(&mut env.counters.fragments.written, passed);
+}
+
+/// Tests of a face whose stencil stage at most adds `steps` on depth failure and
+/// pass; gives what passes.
+#[inline(always)]
+fn counting_tests<L: Lanes, const D24: bool>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    place: Place,
+    plane: &DepthBlock<D24>,
+    decision: Decision,
+    steps: [i8; 2],
+    mask: u64,
+) -> u64 {
+    let config = env.config;
     let c = &mut *env.counters;
     let d = env.target.depth.as_mut().expect("attached");
-    let Some(steps) = face.counts else {
-        let mut access = BlockAccess::default();
-        let depths = Depths::Plane(*plane);
-        let passed = tests::<L, D24>(l, env, place, face, &depths, decision, mask, &mut access);
-        return count(&mut env.counters.fragments.written, passed);
-    };
     let passed = match (config.compare, decision) {
         (CompareFunction::Always, _) | (_, Decision::Pass) => mask,
         (CompareFunction::Never, _) | (_, Decision::Fail) => 0,
         _ => {
             count(&mut c.accesses.z_read, mask);
-            compare_plane(l, config.compare, plane, &d.depth[place.index]) & mask
+            compare_plane(l, config.compare, plane, &d.depth[place.index], mask) & mask
         }
     };
-    count(&mut c.fragments.written, passed);
     count(&mut c.fragments.depth_failed, mask & !passed);
     for (m, step) in [(mask & !passed, steps[0]), (passed, steps[1])] {
         if step != 0 && m != 0 {
@@ -285,6 +301,7 @@ fn count_or_write<L: Lanes, const D24: bool>(
         let d = env.target.depth.as_mut().expect("attached");
         write_depth(l, config, env.counters, d, place.index, &Depths::Plane(*plane), inside, passed);
     }
+    passed
 }
 
 /// Asks zmin/zmax where the draw uses them; `None` where the block is thrown away.
@@ -334,6 +351,7 @@ fn fragments<L: Lanes, const D24: bool>(
     plane: DepthBlock<D24>,
     decision: Option<Decision>,
     mask: u64,
+    observed: bool,
 ) -> BlockAccess {
     let config = env.config;
     let mut access = BlockAccess { covered: mask, hiz_read: config.hiz, ..BlockAccess::default() };
@@ -348,7 +366,14 @@ fn fragments<L: Lanes, const D24: bool>(
             depths = Depths::Shader(shade::shader_depths::<D24>(env, alive));
         }
     }
-    if config.attached {
+    if config.attached
+        && !observed
+        && config.bounds.is_none()
+        && !late
+        && let Some(steps) = face.counts
+    {
+        alive = counting_tests(l, env, place, &plane, decision, steps, alive);
+    } else if config.attached {
         alive = outlined(
             l,
             #[inline(always)]
@@ -442,7 +467,7 @@ fn tests<L: Lanes, const D24: bool>(
                 count(&mut c.accesses.z_read, stencil_pass);
                 access.z_read = stencil_pass;
             }
-            compare_block(l, config.compare, depths, stored) & stencil_pass
+            compare_block(l, config.compare, depths, stored, stencil_pass) & stencil_pass
         }
     };
     count(&mut c.fragments.depth_failed, stencil_pass & !depth_pass);
@@ -513,15 +538,22 @@ fn compare_plane<L: Lanes, const D24: bool>(
     f: CompareFunction,
     plane: &DepthBlock<D24>,
     stored: &Block<u32>,
+    mask: u64,
 ) -> u64 {
     if f == CompareFunction::Less {
         return packets(
             #[inline(always)]
-            |k| plane.packet(l, k).lt(depth::load(l, stored, k)).bits(),
+            |k| match (mask >> (16 * k)) as u16 {
+                0 => 0,
+                _ => plane.packet(l, k).lt(depth::load(l, stored, k)).bits(),
+            },
         );
     }
     let (mut less, mut equal) = (0, 0);
     for k in 0..PACKETS {
+        if (mask >> (16 * k)) as u16 == 0 {
+            continue;
+        }
         let (z, s) = (plane.packet(l, k), depth::load(l, stored, k));
         less |= u64::from(z.lt(s).bits()) << (16 * k);
         equal |= u64::from(z.eq(s).bits()) << (16 * k);
@@ -535,9 +567,10 @@ fn compare_block<L: Lanes, const D24: bool>(
     f: CompareFunction,
     depths: &Depths<D24>,
     stored: &Block<u32>,
+    mask: u64,
 ) -> u64 {
     match depths {
-        Depths::Plane(p) => compare_plane(l, f, p, stored),
+        Depths::Plane(p) => compare_plane(l, f, p, stored, mask),
         Depths::Shader(b) => {
             let (mut less, mut equal) = (0, 0);
             for k in 0..PACKETS {
@@ -564,6 +597,9 @@ fn write_block<L: Lanes, const D24: bool>(
         #[inline(always)]
         |k| {
             let m = (mask >> (16 * k)) as u16;
+            if m == 0 {
+                return 0;
+            }
             let z = fragment_depth(l, depths, k);
             let same = if differs || !COUNT { 0 } else { z.eq(depth::load(l, stored, k)).bits() & m };
             depth::store(l, stored, k, z, m);

@@ -83,15 +83,15 @@ impl TileEdges {
         (a.min(0) + b.min(0), a.max(0) + b.max(0))
     }
 
-    /// Pixels of block (bx, by) inside all three edges.
+    /// Pixels of packets `first..=last` of block (bx, by) inside all three edges.
     #[inline(always)]
-    fn mask<L: Lanes>(&self, l: L, bx: i32, by: i32) -> u64 {
+    fn mask<L: Lanes>(&self, l: L, bx: i32, by: i32, first: usize, last: usize) -> u64 {
         let (ix, iy) = (I32::from_array(l, &IX), I32::from_array(l, &IY));
         let mut e: [I32<L>; 3] = each3(
             #[inline(always)]
             |k| {
                 (iy * I32::splat(l, self.dx[k]) - ix * I32::splat(l, self.dy[k]))
-                    + I32::splat(l, self.at_block(k, bx, by))
+                    + I32::splat(l, self.at_block(k, bx, by) + 2 * first as i32 * self.dx[k])
             },
         );
         let step: [I32<L>; 3] = each3(
@@ -100,7 +100,7 @@ impl TileEdges {
         );
         let zero = I32::splat(l, 0);
         let mut m = 0;
-        for p in 0..4 {
+        for p in first..=last {
             let inside = (e[0] | e[1] | e[2]).ge(zero);
             m |= u64::from(inside.bits()) << (16 * p);
             for k in 0..3 {
@@ -160,11 +160,15 @@ fn triangle<L: Lanes, R: Recorder, const D24: bool>(
     let e = TileEdges::new(t, env.target.x, env.target.y);
     let blocks = [x0 >> 3, y0 >> 3, x1 >> 3, y1 >> 3];
     let [bx0, by0, bx1, by1] = blocks;
-    if (bx1 - bx0) * (by1 - by0) <= 1 && (bx1 - bx0) + (by1 - by0) <= 2 {
-        // Few blocks: their masks are as cheap as asking whether they matter.
+    if t.steep || ((bx1 - bx0) * (by1 - by0) <= 1 && (bx1 - bx0) + (by1 - by0) <= 2) {
+        // Few blocks: their masks are as cheap as asking whether they matter. Steep
+        // triangles are slivers, and groups know fixed-point depth only.
         for by in by0..=by1 {
+            // Packets that the triangle's rows touch.
+            let first = ((y0 - 8 * by).max(0) >> 1) as usize;
+            let last = ((y1 - 8 * by).min(7) >> 1) as usize;
             for bx in bx0..=bx1 {
-                let m = e.mask(l, bx, by) & w.mask(bx, by);
+                let m = e.mask(l, bx, by, first, last) & w.mask(bx, by);
                 if m != 0 {
                     one_block::<L, R, D24>(l, env, recorder, t, [bx, by], m);
                 }
@@ -272,7 +276,7 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
         let i = left.trailing_zeros() as usize;
         left &= left - 1;
         let (bx, by) = (gx + GROUP_X[i], gy + GROUP_Y[i]);
-        let m = if full >> i & 1 != 0 { u64::MAX } else { e.mask(l, bx, by) & w.mask(bx, by) };
+        let m = if full >> i & 1 != 0 { u64::MAX } else { e.mask(l, bx, by, 0, 3) & w.mask(bx, by) };
         if m == 0 {
             continue;
         }

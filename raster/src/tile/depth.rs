@@ -8,6 +8,8 @@ use crate::simd::{F32, F64, I32, LANES, Lanes, round_to_i32};
 use crate::state::CompareFunction;
 use crate::texture::Block;
 
+/// Limit of a steep plane's depth: far outside of any range, well inside of 32 bits.
+const STEEP_LIMIT: f64 = 1_073_741_824.0;
 /// Half a D24 step in the fraction of D24 planes.
 const D24_HALF: i32 = 1 << (D24_FRACTION - 1);
 
@@ -21,6 +23,8 @@ pub(crate) struct DepthBlock<const D24: bool> {
     base: i32,
     slope: [i32; 2],
     range: [i32; 2],
+    /// Base and gradients in doubles, of a plane too steep for fixed point.
+    steep: Option<[f64; 3]>,
 }
 
 /// The same for a fragment shader, which does not care for the format.
@@ -43,16 +47,16 @@ impl ShaderDepth {
 
 impl<const D24: bool> DepthBlock<D24> {
     /// Where nobody looks at depth.
-    pub(crate) const UNUSED: Self = Self { base: 0, slope: [0; 2], range: [0; 2] };
+    pub(crate) const UNUSED: Self = Self { base: 0, slope: [0; 2], range: [0; 2], steep: None };
 
     /// As a fragment shader sees it.
     #[inline(always)]
     pub(super) fn for_shader(&self) -> ShaderDepth {
-        let Self { base, slope, range } = *self;
+        let Self { base, slope, range, steep } = *self;
         if D24 {
-            ShaderDepth::D24(DepthBlock { base, slope, range })
+            ShaderDepth::D24(DepthBlock { base, slope, range, steep })
         } else {
-            ShaderDepth::Float(DepthBlock { base, slope, range })
+            ShaderDepth::Float(DepthBlock { base, slope, range, steep })
         }
     }
 
@@ -63,6 +67,7 @@ impl<const D24: bool> DepthBlock<D24> {
 
     #[inline(always)]
     fn at_depth(t: &Triangle, base: f64, range: [i32; 2]) -> Self {
+        let steep = (D24 && t.steep).then_some([base, t.zx, t.zy]);
         let base = if D24 {
             let b = base * D24_SCALE;
             let b = if b < D24_BASE_LIMIT { b } else { D24_BASE_LIMIT };
@@ -70,19 +75,28 @@ impl<const D24: bool> DepthBlock<D24> {
         } else {
             (base as f32).to_bits() as i32
         };
-        Self { base, slope: t.slope, range }
+        Self { base, slope: t.slope, range, steep }
     }
 
     /// The block whose `base` a [`GroupDepth`] has found.
     #[inline(always)]
     pub(super) fn with_base(t: &Triangle, base: i32, range: [i32; 2]) -> Self {
-        Self { base, slope: t.slope, range }
+        Self { base, slope: t.slope, range, steep: None }
+    }
+
+    /// Depth of one pixel of a steep plane (rules §5).
+    fn steep_at([base, gx, gy]: [f64; 3], ix: i32, iy: i32) -> i32 {
+        let z = ((base + gx * f64::from(ix)) + gy * f64::from(iy)) * f64::from(D24_MAX);
+        let z = if z < STEEP_LIMIT { z } else { STEEP_LIMIT };
+        round_to_i32(if z > -STEEP_LIMIT { z } else { -STEEP_LIMIT })
     }
 
     /// Depth of one pixel before clamping: an ordered integer (D24) or float bits.
     #[inline(always)]
     fn raw_at(&self, ix: i32, iy: i32) -> i32 {
-        if D24 {
+        if let Some(plane) = self.steep {
+            Self::steep_at(plane, ix, iy)
+        } else if D24 {
             (self.base + self.slope[0] * ix + self.slope[1] * iy + D24_HALF) >> D24_FRACTION
         } else {
             let f = |b: i32| f32::from_bits(b as u32);
@@ -124,7 +138,10 @@ impl<const D24: bool> DepthBlock<D24> {
     fn raw_packet<L: Lanes>(&self, l: L, k: usize) -> I32<L> {
         let ix = I32::from_array(l, &IX);
         let iy = I32::from_array(l, &IY) + I32::splat(l, 2 * k as i32);
-        if D24 {
+        if let Some(plane) = self.steep {
+            let z = core::array::from_fn(|i| Self::steep_at(plane, IX[i], IY[i] + 2 * k as i32));
+            I32::from_array(l, &z)
+        } else if D24 {
             let z = ix * I32::splat(l, self.slope[0]) + iy * I32::splat(l, self.slope[1]);
             (z + I32::splat(l, self.base + D24_HALF)) >> D24_FRACTION
         } else {

@@ -84,10 +84,10 @@ impl DepthPlane {
         }
     }
 
-    /// Whether the D24 slope must be limited.
-    pub(super) fn slope_limited(&self) -> bool {
-        let limited = |g| scaled(g).abs() > pow2(25);
-        self.encoding == Encoding::D24 && (limited(self.plane.gx) || limited(self.plane.gy))
+    /// Whether the D24 slope is beyond fixed point.
+    pub(super) fn is_steep(&self) -> bool {
+        let beyond = |g| scaled(g).abs() > pow2(25);
+        self.encoding == Encoding::D24 && (beyond(self.plane.gx) || beyond(self.plane.gy))
     }
 
     /// Stored depth at pixel (x, y), and whether it is beyond the far end before limiting.
@@ -114,8 +114,12 @@ impl DepthPlane {
     }
 
     fn integer(&self, base: f64, ix: u32, iy: u32) -> i64 {
+        if self.is_steep() {
+            let z = (base + self.plane.gx * f64::from(ix)) + self.plane.gy * f64::from(iy);
+            return rne((z * 16_777_215.0).clamp(-pow2(30), pow2(30))) as i64;
+        }
         let base = scaled(base).clamp(-1_677_721_583.0, 1_677_721_583.0) as i64;
-        let slope = |g: f64| scaled(g).clamp(-pow2(25), pow2(25)) as i64;
+        let slope = |g: f64| scaled(g) as i64;
         let fixed =
             base + slope(self.plane.gx) * i64::from(ix) + slope(self.plane.gy) * i64::from(iy);
         (fixed + 16).div_euclid(32)

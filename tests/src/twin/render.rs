@@ -229,7 +229,7 @@ fn run_triangle(
         varyings: Varyings::new(triangle, &ctx.draw.interpolation),
         clip_planes: ClipPlanes::new(triangle, &ctx.draw.primitive.clip_planes),
     };
-    counters.primitives.depth_slope_limited += u64::from(tri.depth.slope_limited());
+    counters.primitives.steep_depth_planes += u64::from(tri.depth.is_steep());
     for y in (0..ctx.size[1]).step_by(8) {
         for x in (0..ctx.size[0]).step_by(8) {
             let access = BlockAccess {

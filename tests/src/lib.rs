@@ -6,6 +6,7 @@ pub mod compare;
 pub mod digest;
 pub mod gpu_run;
 pub mod lcg;
+pub mod npy;
 pub mod parallel;
 pub mod random;
 pub mod shrink;

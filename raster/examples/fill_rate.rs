@@ -9,14 +9,17 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use gnomon_raster::shader::{Fragment, FragmentShader, FragmentStage, Interpolation, Vertex, VertexShader};
+use gnomon_raster::shader::{
+    Fragment, FragmentShader, FragmentStage, Interpolation, Vertex, VertexShader,
+};
 use gnomon_raster::state::{
-    ColorTargetState, CompareFunction, DepthState, DepthStencilState, PrimitiveState, StencilFaceState,
-    StencilOperation, StencilState,
+    ColorTargetState, CompareFunction, DepthState, DepthStencilState, PrimitiveState,
+    StencilFaceState, StencilOperation, StencilState,
 };
 use gnomon_raster::{
-    ColorAttachment, CommandList, DepthStencilAttachment, Draw, F32, Format, Gpu, GpuConfig, IndexBuffer, Lanes,
-    LoadOp, RenderPass, RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
+    ColorAttachment, CommandList, DepthStencilAttachment, Draw, F32, Format, Gpu, GpuConfig,
+    IndexBuffer, Lanes, LoadOp, RenderPass, RenderPipeline, StoreOp, Subresource,
+    TextureDescriptor, TextureId, VertexBuffer,
 };
 
 const SIZE: u32 = 1024;
@@ -47,7 +50,15 @@ impl FragmentShader for Constant {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let [r, g, b, a] = self.0;
-        f.set_color(0, [F32::splat(l, r), F32::splat(l, g), F32::splat(l, b), F32::splat(l, a)]);
+        f.set_color(
+            0,
+            [
+                F32::splat(l, r),
+                F32::splat(l, g),
+                F32::splat(l, b),
+                F32::splat(l, a),
+            ],
+        );
     }
 }
 
@@ -67,7 +78,9 @@ impl FragmentShader for Sixty {
 /// Vertices in NDC and indices of an n×n grid of squares of `pixels` each.
 fn grid(n: u32, pixels: f64) -> (VertexBuffer, IndexBuffer) {
     let at = |i: u32| (f64::from(i) * pixels * 2.0 / f64::from(SIZE) - 1.0) as f32;
-    let data = (0..=n).flat_map(|r| (0..=n).flat_map(move |q| [at(q), at(r)])).collect();
+    let data = (0..=n)
+        .flat_map(|r| (0..=n).flat_map(move |q| [at(q), at(r)]))
+        .collect();
     let mut indices = Vec::new();
     for r in 0..n {
         for q in 0..n {
@@ -90,17 +103,36 @@ struct Case {
 }
 
 fn depth(compare: CompareFunction, write: bool) -> DepthStencilState {
-    DepthStencilState { depth: DepthState { compare, write, bounds: None }, ..DepthStencilState::default() }
+    DepthStencilState {
+        depth: DepthState {
+            compare,
+            write,
+            bounds: None,
+        },
+        ..DepthStencilState::default()
+    }
 }
 
 fn stencil(face: StencilFaceState) -> DepthStencilState {
-    DepthStencilState { stencil: StencilState { front: face, back: face }, ..depth(CompareFunction::Less, false) }
+    DepthStencilState {
+        stencil: StencilState {
+            front: face,
+            back: face,
+        },
+        ..depth(CompareFunction::Less, false)
+    }
 }
 
 fn cases() -> Vec<Case> {
     let inc = StencilOperation::IncrementWrap;
-    let zfail = StencilFaceState { depth_fail_op: inc, ..StencilFaceState::IGNORE };
-    let zpass = StencilFaceState { pass_op: inc, ..StencilFaceState::IGNORE };
+    let zfail = StencilFaceState {
+        depth_fail_op: inc,
+        ..StencilFaceState::IGNORE
+    };
+    let zpass = StencilFaceState {
+        pass_op: inc,
+        ..StencilFaceState::IGNORE
+    };
     let none = ColorTargetState::NONE;
     let add = ColorTargetState::ADDITIVE;
     let opaque = ColorTargetState::OPAQUE;
@@ -119,14 +151,86 @@ fn cases() -> Vec<Case> {
     };
     use CompareFunction::{Less, LessEqual};
     vec![
-        case("depth_pass", 1.0, 0.5, -1.0 / 64.0, depth(Less, true), none, None, &[]),
-        case("depth_fail", 0.25, 0.5, 0.0, depth(Less, true), none, None, &[]),
-        case("stencil_zfail", 0.25, 0.5, 0.0, stencil(zfail), none, None, &[]),
-        case("stencil_zpass", 1.0, 0.5, 0.0, stencil(zpass), none, None, &[]),
-        case("add_rgba8", 1.0, 0.5, 0.0, DepthStencilState::default(), add, constant(), &[]),
-        case("colour", 1.0, 0.5, 0.0, depth(LessEqual, false), opaque, constant(), &[]),
-        case("shader60", 1.0, 0.5, 0.0, depth(LessEqual, false), opaque, sixty(), linear),
-        case("shader60_add", 1.0, 0.5, 0.0, DepthStencilState::default(), add, sixty(), linear),
+        case(
+            "depth_pass",
+            1.0,
+            0.5,
+            -1.0 / 64.0,
+            depth(Less, true),
+            none,
+            None,
+            &[],
+        ),
+        case(
+            "depth_fail",
+            0.25,
+            0.5,
+            0.0,
+            depth(Less, true),
+            none,
+            None,
+            &[],
+        ),
+        case(
+            "stencil_zfail",
+            0.25,
+            0.5,
+            0.0,
+            stencil(zfail),
+            none,
+            None,
+            &[],
+        ),
+        case(
+            "stencil_zpass",
+            1.0,
+            0.5,
+            0.0,
+            stencil(zpass),
+            none,
+            None,
+            &[],
+        ),
+        case(
+            "add_rgba8",
+            1.0,
+            0.5,
+            0.0,
+            DepthStencilState::default(),
+            add,
+            constant(),
+            &[],
+        ),
+        case(
+            "colour",
+            1.0,
+            0.5,
+            0.0,
+            depth(LessEqual, false),
+            opaque,
+            constant(),
+            &[],
+        ),
+        case(
+            "shader60",
+            1.0,
+            0.5,
+            0.0,
+            depth(LessEqual, false),
+            opaque,
+            sixty(),
+            linear,
+        ),
+        case(
+            "shader60_add",
+            1.0,
+            0.5,
+            0.0,
+            DepthStencilState::default(),
+            add,
+            sixty(),
+            linear,
+        ),
     ]
 }
 
@@ -167,10 +271,20 @@ impl Bench {
     }
 
     /// Median seconds of a pass, and fragments and triangles of one.
-    fn measure(&mut self, case: &Case, mesh: &(Arc<VertexBuffer>, Arc<IndexBuffer>), layers: u32) -> (f64, u64, u64) {
+    fn measure(
+        &mut self,
+        case: &Case,
+        mesh: &(Arc<VertexBuffer>, Arc<IndexBuffer>),
+        layers: u32,
+    ) -> (f64, u64, u64) {
         let pipeline = Arc::new(RenderPipeline {
             label: case.name.into(),
-            vertex: Layers { z0: case.z0, dz: case.dz, varyings: case.varyings }.into(),
+            vertex: Layers {
+                z0: case.z0,
+                dz: case.dz,
+                varyings: case.varyings,
+            }
+            .into(),
             fragment: case.fragment.clone(),
             primitive: PrimitiveState::default(),
             depth_stencil: case.ds,
@@ -204,7 +318,9 @@ fn main() {
     let mut json = None;
     let args: Vec<String> = std::env::args().skip(1).collect();
     for pair in args.chunks(2) {
-        let [key, value] = pair else { panic!("{} needs a value", pair[0]) };
+        let [key, value] = pair else {
+            panic!("{} needs a value", pair[0])
+        };
         match key.as_str() {
             "--threads" => config.threads = value.parse().expect("a number"),
             "--tile" => config.tile = value.parse().expect("a number"),
@@ -217,19 +333,49 @@ fn main() {
         }
     }
     let mut gpu = Gpu::new(config).expect("valid");
-    let color = gpu.create_texture(&TextureDescriptor::d2("colour", Format::Rgba8Unorm, SIZE, SIZE)).expect("valid");
+    let color = gpu
+        .create_texture(&TextureDescriptor::d2(
+            "colour",
+            Format::Rgba8Unorm,
+            SIZE,
+            SIZE,
+        ))
+        .expect("valid");
     let depth = TextureDescriptor::d2("depth", Format::Depth24Stencil8, SIZE, SIZE);
     let depth = gpu.create_texture(&depth).expect("valid");
-    println!("gnomon | simd {} | threads {} | tile {}", config.simd, gpu.threads(), config.tile);
-    let mut bench = Bench { gpu, color, depth, budget: Duration::from_secs_f64(budget) };
-    let meshes = [("large", grid(1, f64::from(SIZE)), 16), ("small", grid(224, 4.5), 4)];
+    println!(
+        "gnomon | simd {} | threads {} | tile {}",
+        config.simd,
+        gpu.threads(),
+        config.tile
+    );
+    let mut bench = Bench {
+        gpu,
+        color,
+        depth,
+        budget: Duration::from_secs_f64(budget),
+    };
+    let meshes = [
+        ("large", grid(1, f64::from(SIZE)), 16),
+        ("small", grid(224, 4.5), 4),
+    ];
     let meshes = meshes.map(|(n, (v, i), layers)| (n, (Arc::new(v), Arc::new(i)), layers));
     let mut rows = String::new();
     for case in cases().iter().filter(|c| only.is_empty() || only == c.name) {
-        for (name, mesh, layers) in meshes.iter().filter(|m| only_mesh.is_empty() || only_mesh == m.0) {
+        for (name, mesh, layers) in meshes
+            .iter()
+            .filter(|m| only_mesh.is_empty() || only_mesh == m.0)
+        {
             let (seconds, fragments, triangles) = bench.measure(case, mesh, *layers);
-            let (mf, mt) = (fragments as f64 / seconds / 1e6, triangles as f64 / seconds / 1e6);
-            println!("{:<14} {name:<5} {mf:9.1} Mfragment/s  {mt:8.3} Mtriangle/s  {:8.3} ms", case.name, seconds * 1e3);
+            let (mf, mt) = (
+                fragments as f64 / seconds / 1e6,
+                triangles as f64 / seconds / 1e6,
+            );
+            println!(
+                "{:<14} {name:<5} {mf:9.1} Mfragment/s  {mt:8.3} Mtriangle/s  {:8.3} ms",
+                case.name,
+                seconds * 1e3
+            );
             let sep = if rows.is_empty() { "" } else { ",\n" };
             write!(
                 rows,

@@ -110,7 +110,10 @@ pub(crate) struct Referenced {
 impl Referenced {
     pub(crate) fn of(indices: &[u32]) -> Self {
         let (Some(&min), Some(&max)) = (indices.iter().min(), indices.iter().max()) else {
-            return Self { vertices: Vec::new(), local: Vec::new() };
+            return Self {
+                vertices: Vec::new(),
+                local: Vec::new(),
+            };
         };
         let mut place = vec![u32::MAX; (max - min) as usize + 1];
         for &i in indices {
@@ -141,7 +144,11 @@ impl IndexBuffer {
     #[must_use]
     pub fn new(indices: Vec<u32>) -> Self {
         let largest = indices.iter().copied().max();
-        Self { indices, largest, referenced: OnceLock::new() }
+        Self {
+            indices,
+            largest,
+            referenced: OnceLock::new(),
+        }
     }
 
     /// The indices.
@@ -158,7 +165,8 @@ impl IndexBuffer {
 
     /// What the whole buffer refers to, found once.
     pub(crate) fn referenced(&self) -> &Referenced {
-        self.referenced.get_or_init(|| Referenced::of(&self.indices))
+        self.referenced
+            .get_or_init(|| Referenced::of(&self.indices))
     }
 }
 
@@ -223,13 +231,22 @@ impl Sampler {
     /// Linear in every direction and between levels.
     #[must_use]
     pub fn trilinear() -> Self {
-        Self { mag: FilterMode::Linear, min: FilterMode::Linear, mip: FilterMode::Linear, ..Self::default() }
+        Self {
+            mag: FilterMode::Linear,
+            min: FilterMode::Linear,
+            mip: FilterMode::Linear,
+            ..Self::default()
+        }
     }
 
     /// Linear in the image, nearest level.
     #[must_use]
     pub fn bilinear() -> Self {
-        Self { mag: FilterMode::Linear, min: FilterMode::Linear, ..Self::default() }
+        Self {
+            mag: FilterMode::Linear,
+            min: FilterMode::Linear,
+            ..Self::default()
+        }
     }
 }
 
@@ -343,6 +360,12 @@ mod tests {
         let r = Referenced::of(&[7, 3, 7, 9, 3, 4]);
         assert_eq!(r.vertices, [3, 4, 7, 9]);
         assert_eq!(r.local, [2, 0, 2, 3, 0, 1]);
-        assert_eq!(Referenced::of(&[]), Referenced { vertices: vec![], local: vec![] });
+        assert_eq!(
+            Referenced::of(&[]),
+            Referenced {
+                vertices: vec![],
+                local: vec![]
+            }
+        );
     }
 }

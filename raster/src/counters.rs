@@ -179,9 +179,22 @@ impl ClientTraffic {
     /// Client names and traffic, in a fixed order, clients without traffic left out.
     #[must_use]
     pub fn named(&self) -> Vec<(String, Traffic)> {
-        let mut all = vec![("z".to_owned(), self.z), ("stencil".to_owned(), self.stencil)];
-        all.extend(self.color.iter().enumerate().map(|(i, t)| (format!("color[{i}]"), *t)));
-        all.extend(self.tex.iter().enumerate().map(|(i, t)| (format!("tex[{i}]"), *t)));
+        let mut all = vec![
+            ("z".to_owned(), self.z),
+            ("stencil".to_owned(), self.stencil),
+        ];
+        all.extend(
+            self.color
+                .iter()
+                .enumerate()
+                .map(|(i, t)| (format!("color[{i}]"), *t)),
+        );
+        all.extend(
+            self.tex
+                .iter()
+                .enumerate()
+                .map(|(i, t)| (format!("tex[{i}]"), *t)),
+        );
         all.push(("vertex".to_owned(), self.vertex));
         all.push(("index".to_owned(), self.index));
         all.push(("hiz".to_owned(), self.hiz));
@@ -209,7 +222,11 @@ pub(crate) const HIZ_BYTES: u64 = 8;
 
 /// Bytes of the word that holds depth and stencil together.
 pub(crate) fn packed_word_bytes(f: Format) -> u64 {
-    if f == Format::Depth32FloatStencil8 { 8 } else { 4 }
+    if f == Format::Depth32FloatStencil8 {
+        8
+    } else {
+        4
+    }
 }
 
 impl Counters {
@@ -236,8 +253,14 @@ impl Counters {
         t.vertex.add(&o.traffic.vertex);
         t.index.add(&o.traffic.index);
         t.packed_depth_stencil.add(&o.traffic.packed_depth_stencil);
-        t.color.iter_mut().zip(&o.traffic.color).for_each(|(a, b)| a.add(b));
-        t.tex.iter_mut().zip(&o.traffic.tex).for_each(|(a, b)| a.add(b));
+        t.color
+            .iter_mut()
+            .zip(&o.traffic.color)
+            .for_each(|(a, b)| a.add(b));
+        t.tex
+            .iter_mut()
+            .zip(&o.traffic.tex)
+            .for_each(|(a, b)| a.add(b));
     }
 
     /// Turns access counts into traffic; vertex and index traffic are added by
@@ -250,9 +273,14 @@ impl Counters {
         t.stencil = Traffic::of(a.stencil_read, a.stencil_write, 1);
         t.hiz = Traffic::of(a.hiz_read, a.hiz_write, HIZ_BYTES);
         let word = sizes.depth.map_or(0, packed_word_bytes);
-        t.packed_depth_stencil = Traffic::of(a.z_read + a.stencil_read, a.z_write + a.stencil_write, word);
+        t.packed_depth_stencil =
+            Traffic::of(a.z_read + a.stencil_read, a.z_write + a.stencil_write, word);
         for (i, f) in sizes.color.iter().enumerate() {
-            t.color[i] = Traffic::of(a.color_read[i], a.color_write[i], f.map_or(0, Format::bytes));
+            t.color[i] = Traffic::of(
+                a.color_read[i],
+                a.color_write[i],
+                f.map_or(0, Format::bytes),
+            );
         }
         for (i, f) in sizes.tex.iter().enumerate() {
             t.tex[i] = Traffic::of(a.tex_texel[i], 0, f.map_or(0, Format::bytes));

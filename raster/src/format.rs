@@ -117,7 +117,11 @@ pub fn div255(t: u32) -> u32 {
 /// Float to half, ties to even; every NaN becomes 0x7e00.
 #[must_use]
 pub fn f16_from_f32(v: f32) -> u16 {
-    if v.is_nan() { 0x7e00 } else { f16::from_f32_const(v).to_bits() }
+    if v.is_nan() {
+        0x7e00
+    } else {
+        f16::from_f32_const(v).to_bits()
+    }
 }
 
 /// Half to float, exact; every NaN becomes 0x7fc0_0000.
@@ -135,7 +139,11 @@ pub fn i16_from_f32(v: f32) -> i16 {
 /// The value itself, or the canonical NaN 0x7fc0_0000.
 #[must_use]
 pub fn canonical_nan(v: f32) -> f32 {
-    if v.is_nan() { f32::from_bits(0x7fc0_0000) } else { v }
+    if v.is_nan() {
+        f32::from_bits(0x7fc0_0000)
+    } else {
+        v
+    }
 }
 
 /// Float depth in 0..=1 to D24: half-even rounding of the float32 product.

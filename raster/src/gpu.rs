@@ -27,7 +27,12 @@ pub struct GpuConfig {
 
 impl Default for GpuConfig {
     fn default() -> Self {
-        Self { threads: 0, tile: 64, simd: SimdLevel::detect(), skip: true }
+        Self {
+            threads: 0,
+            tile: 64,
+            simd: SimdLevel::detect(),
+            skip: true,
+        }
     }
 }
 
@@ -103,7 +108,12 @@ impl Gpu {
             1 => None,
             n => Some(execute::start_pool(n)?),
         };
-        Ok(Self { config, pool, textures: Vec::new(), recycled: Recycled::default() })
+        Ok(Self {
+            config,
+            pool,
+            textures: Vec::new(),
+            recycled: Recycled::default(),
+        })
     }
 
     /// How it executes.
@@ -115,7 +125,9 @@ impl Gpu {
     /// Number of worker threads.
     #[must_use]
     pub fn threads(&self) -> usize {
-        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+        self.pool
+            .as_ref()
+            .map_or(1, rayon::ThreadPool::current_num_threads)
     }
 
     /// Creates a texture of zeros.
@@ -133,7 +145,12 @@ impl Gpu {
     /// # Errors
     /// Where there is none of that id.
     pub fn texture(&self, id: TextureId) -> Result<&Texture, Error> {
-        self.textures.get(id.0 as usize).ok_or(Error::NoSuchTexture { id: id.0, count: self.textures.len() })
+        self.textures
+            .get(id.0 as usize)
+            .ok_or(Error::NoSuchTexture {
+                id: id.0,
+                count: self.textures.len(),
+            })
     }
 
     /// A texture, to fill it.
@@ -142,7 +159,9 @@ impl Gpu {
     /// Where there is none of that id.
     pub fn texture_mut(&mut self, id: TextureId) -> Result<&mut Texture, Error> {
         let count = self.textures.len();
-        self.textures.get_mut(id.0 as usize).ok_or(Error::NoSuchTexture { id: id.0, count })
+        self.textures
+            .get_mut(id.0 as usize)
+            .ok_or(Error::NoSuchTexture { id: id.0, count })
     }
 
     /// Validates all of `list`, then executes it.

@@ -62,6 +62,7 @@ mod execute;
 pub mod format;
 mod geometry;
 mod gpu;
+pub mod math;
 mod observer;
 pub mod shader;
 pub mod simd;

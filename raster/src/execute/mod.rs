@@ -18,7 +18,9 @@ pub(crate) fn submit(
     list: &CommandList,
     mut observer: Option<&mut dyn AccessObserver>,
 ) -> Result<SubmitReport, Error> {
-    list.passes.iter().try_for_each(|p| validate::render_pass(gpu, p))?;
+    list.passes
+        .iter()
+        .try_for_each(|p| validate::render_pass(gpu, p))?;
     let mut report = SubmitReport::default();
     for (number, pass) in list.passes.iter().enumerate() {
         let start = Instant::now();
@@ -38,7 +40,10 @@ pub(crate) fn start_pool(n: usize) -> Result<rayon::ThreadPool, Error> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(n)
         .build()
-        .map_err(|e| Error::Threads { given: n, reason: e.to_string() })
+        .map_err(|e| Error::Threads {
+            given: n,
+            reason: e.to_string(),
+        })
 }
 
 /// Whether this thread's floating-point unit replaces denormals by zero.

@@ -20,7 +20,11 @@ const VERTEX_RUN: usize = 2048;
 const BATCH: u32 = 64 * CHUNK;
 
 /// Executes a validated pass. Accesses go to `accesses` where it is given.
-pub(super) fn execute(gpu: &mut Gpu, pass: &RenderPass, accesses: Option<&mut Vec<BlockAccess>>) -> PassReport {
+pub(super) fn execute(
+    gpu: &mut Gpu,
+    pass: &RenderPass,
+    accesses: Option<&mut Vec<BlockAccess>>,
+) -> PassReport {
     let mut lent = split::lend(gpu, pass);
     let mut recycled = core::mem::take(&mut gpu.recycled);
     let pool = gpu.pool.take();
@@ -36,7 +40,12 @@ pub(super) fn execute(gpu: &mut Gpu, pass: &RenderPass, accesses: Option<&mut Ve
     let draws = pass.draws.iter().zip(counters);
     PassReport {
         label: pass.label.clone(),
-        draws: draws.map(|(d, counters)| DrawReport { label: d.label.clone(), counters }).collect(),
+        draws: draws
+            .map(|(d, counters)| DrawReport {
+                label: d.label.clone(),
+                counters,
+            })
+            .collect(),
         clear,
         time: std::time::Duration::ZERO,
     }
@@ -71,18 +80,45 @@ struct Executor<'a> {
 }
 
 impl<'a> Executor<'a> {
-    fn new(gpu: &'a Gpu, pass: &'a RenderPass, lent: &'a mut Lent, recycled: &'a mut Recycled) -> Self {
-        let target = Target { width: lent.layout.width, height: lent.layout.height, sizes: lent.sizes };
-        let prepared = pass.draws.iter().map(|d| prepare(gpu, &target, d)).collect();
-        Self { gpu, pass, lent, prepared, recycled, parallel: gpu.config.threads != 1 }
+    fn new(
+        gpu: &'a Gpu,
+        pass: &'a RenderPass,
+        lent: &'a mut Lent,
+        recycled: &'a mut Recycled,
+    ) -> Self {
+        let target = Target {
+            width: lent.layout.width,
+            height: lent.layout.height,
+            sizes: lent.sizes,
+        };
+        let prepared = pass
+            .draws
+            .iter()
+            .map(|d| prepare(gpu, &target, d))
+            .collect();
+        Self {
+            gpu,
+            pass,
+            lent,
+            prepared,
+            recycled,
+            parallel: gpu.config.threads != 1,
+        }
     }
 
     fn run(mut self, accesses: Option<&mut Vec<BlockAccess>>) -> Vec<Counters> {
         let units = self.units();
-        let mut counters: Vec<Counters> =
-            self.prepared.iter().enumerate().map(|(i, p)| vertex_traffic(p.draw, &units, i)).collect();
+        let mut counters: Vec<Counters> = self
+            .prepared
+            .iter()
+            .enumerate()
+            .map(|(i, p)| vertex_traffic(p.draw, &units, i))
+            .collect();
         let batches = batches(&units);
-        let fills = (split::loads(self.pass, &self.lent.sizes), split::stores(self.pass));
+        let fills = (
+            split::loads(self.pass, &self.lent.sizes),
+            split::stores(self.pass),
+        );
         let mut recorded = accesses;
         let last = batches.len() - 1;
         for (b, jobs) in batches.iter().enumerate() {
@@ -90,11 +126,23 @@ impl<'a> Executor<'a> {
             let chunks = self.chunks(&units, jobs, &shaded);
             for (job, chunk) in jobs.iter().zip(&chunks) {
                 let c = &mut counters[units[job.unit].draw];
-                c.add(&Counters { primitives: chunk.counters, ..Counters::default() });
+                c.add(&Counters {
+                    primitives: chunk.counters,
+                    ..Counters::default()
+                });
             }
             let before = (b == 0).then_some(&fills.0);
             let after = (b == last).then_some(&fills.1);
-            self.tiles(&units, jobs, &shaded, &chunks, before, after, &mut counters, recorded.as_deref_mut());
+            self.tiles(
+                &units,
+                jobs,
+                &shaded,
+                &chunks,
+                before,
+                after,
+                &mut counters,
+                recorded.as_deref_mut(),
+            );
             self.recycled.chunks.extend(chunks);
             self.recycled.shaded.extend(shaded);
         }
@@ -131,7 +179,10 @@ impl<'a> Executor<'a> {
     /// Shades the vertices of the units of `jobs`; others stay empty.
     fn shade(&mut self, units: &[Unit<'_>], jobs: &[Job]) -> Vec<ShadedVertices> {
         let mut old = core::mem::take(&mut self.recycled.shaded);
-        let mut shaded: Vec<ShadedVertices> = units.iter().map(|_| old.pop().unwrap_or_default()).collect();
+        let mut shaded: Vec<ShadedVertices> = units
+            .iter()
+            .map(|_| old.pop().unwrap_or_default())
+            .collect();
         shaded.iter_mut().for_each(ShadedVertices::clear);
         self.recycled.shaded = old;
         let mut work = Vec::new();
@@ -144,9 +195,17 @@ impl<'a> Executor<'a> {
             let (out, tail) = tail.split_first_mut().expect("the unit exists");
             (rest, offset) = (tail, u + 1);
             let unit = &units[u];
-            out.resize(unit.referenced.vertices.len(), self.prepared[unit.draw].geometry.varyings);
+            out.resize(
+                unit.referenced.vertices.len(),
+                self.prepared[unit.draw].geometry.varyings,
+            );
             let runs = unit.referenced.vertices.chunks(VERTEX_RUN);
-            work.extend(out.parts(VERTEX_RUN).into_iter().zip(runs).map(|(part, run)| (unit, part, run)));
+            work.extend(
+                out.parts(VERTEX_RUN)
+                    .into_iter()
+                    .zip(runs)
+                    .map(|(part, run)| (unit, part, run)),
+            );
         }
         let shade = |(unit, mut part, vertices): (&Unit<'_>, _, &[u32])| {
             let p = &self.prepared[unit.draw];
@@ -168,7 +227,12 @@ impl<'a> Executor<'a> {
         shaded
     }
 
-    fn chunks(&mut self, units: &[Unit<'_>], jobs: &[Job], shaded: &[ShadedVertices]) -> Vec<Chunk> {
+    fn chunks(
+        &mut self,
+        units: &[Unit<'_>],
+        jobs: &[Job],
+        shaded: &[ShadedVertices],
+    ) -> Vec<Chunk> {
         let grid = self.grid();
         let mut old = core::mem::take(&mut self.recycled.chunks);
         self.recycled.chunks = old.split_off(jobs.len().min(old.len()));
@@ -228,10 +292,11 @@ impl<'a> Executor<'a> {
         let scratch = match accesses {
             None => stage.run(&mut tiles, || Silent, |_, _| Silent).0,
             Some(all) => {
-                let (scratch, found) = stage.run(&mut tiles, Vec::new, |mut a: Vec<BlockAccess>, b| {
-                    a.extend(b);
-                    a
-                });
+                let (scratch, found) =
+                    stage.run(&mut tiles, Vec::new, |mut a: Vec<BlockAccess>, b| {
+                        a.extend(b);
+                        a
+                    });
                 all.extend(found);
                 scratch
             }
@@ -269,18 +334,34 @@ impl TileStage<'_> {
         if !self.parallel {
             return tiles.iter_mut().fold(start(), step);
         }
-        tiles.par_iter_mut().with_max_len(1).fold(start, step).reduce(start, |(mut a, ra), (b, rb)| {
-            a.absorb(b);
-            (a, merge(ra, rb))
-        })
+        tiles
+            .par_iter_mut()
+            .with_max_len(1)
+            .fold(start, step)
+            .reduce(start, |(mut a, ra), (b, rb)| {
+                a.absorb(b);
+                (a, merge(ra, rb))
+            })
     }
 
-    fn tile<R: Recorder>(&self, tile: &mut TileTarget<'_>, scratch: &mut Scratch, recorder: &mut R) {
+    fn tile<R: Recorder>(
+        &self,
+        tile: &mut TileTarget<'_>,
+        scratch: &mut Scratch,
+        recorder: &mut R,
+    ) {
         if let Some(fill) = self.before {
             fill.apply(tile, &self.sizes);
         }
         let number = (tile.y >> self.grid.shift) * self.grid.across + (tile.x >> self.grid.shift);
-        run_tile(self.gpu.config.simd, &self.work, number as usize, tile, scratch, recorder);
+        run_tile(
+            self.gpu.config.simd,
+            &self.work,
+            number as usize,
+            tile,
+            scratch,
+            recorder,
+        );
         if let Some(fill) = self.after {
             fill.apply(tile, &self.sizes);
         }
@@ -298,10 +379,17 @@ fn draw_work<'a>(
     let mut work: Vec<DrawWork<'a>> = Vec::new();
     for (job, chunk) in jobs.iter().zip(chunks) {
         let draw = units[job.unit].draw;
-        let chunk = ChunkRef { chunk, shaded: &shaded[job.unit] };
+        let chunk = ChunkRef {
+            chunk,
+            shaded: &shaded[job.unit],
+        };
         match work.last_mut() {
             Some(w) if w.draw == draw => w.chunks.push(chunk),
-            _ => work.push(DrawWork { draw, config: &prepared[draw].config, chunks: vec![chunk] }),
+            _ => work.push(DrawWork {
+                draw,
+                config: &prepared[draw].config,
+                chunks: vec![chunk],
+            }),
         }
     }
     work
@@ -319,7 +407,11 @@ fn batches(units: &[Unit<'_>]) -> Vec<Vec<Job>> {
                 room = BATCH;
             }
             room -= primitives;
-            batches.last_mut().expect("never empty").push(Job { unit: u, first, primitives });
+            batches.last_mut().expect("never empty").push(Job {
+                unit: u,
+                first,
+                primitives,
+            });
         }
     }
     batches
@@ -330,9 +422,10 @@ fn referenced(d: &Draw, primitives: u32) -> std::borrow::Cow<'_, Referenced> {
     let used = (primitives * d.pipeline.primitive.topology.vertices()) as usize;
     let first = d.first as usize;
     match &d.indices {
-        None => {
-            Cow::Owned(Referenced { vertices: (d.first..d.first + used as u32).collect(), local: Vec::new() })
-        }
+        None => Cow::Owned(Referenced {
+            vertices: (d.first..d.first + used as u32).collect(),
+            local: Vec::new(),
+        }),
         Some(b) if first == 0 && used == b.indices().len() => Cow::Borrowed(b.referenced()),
         Some(b) => Cow::Owned(Referenced::of(&b.indices()[first..first + used])),
     }
@@ -355,5 +448,6 @@ fn vertex_traffic(d: &Draw, units: &[Unit<'_>], number: usize) -> Counters {
     if d.indices.is_some() {
         let per = u64::from(d.pipeline.primitive.topology.vertices());
         c.traffic.index = read(mine().map(|u| u64::from(u.primitives) * per).sum(), 4);
-    }    c
+    }
+    c
 }

@@ -27,24 +27,37 @@ pub(super) struct Prepared<'a> {
 }
 
 pub(super) fn prepare<'a>(gpu: &'a Gpu, target: &Target, draw: &'a Draw) -> Prepared<'a> {
-    let viewport = draw.viewport.unwrap_or_else(|| Viewport::full(target.width, target.height));
+    let viewport = draw
+        .viewport
+        .unwrap_or_else(|| Viewport::full(target.width, target.height));
     let geometry = geometry_state(target, draw, &viewport);
     let config = draw_config(gpu, target, draw, &viewport, &geometry);
     let mut sizes = target.sizes;
     for (size, t) in sizes.tex.iter_mut().zip(&config.textures) {
         *size = Some(t.texture.desc.format);
     }
-    Prepared { draw, geometry, config, sizes }
+    Prepared {
+        draw,
+        geometry,
+        config,
+        sizes,
+    }
 }
 
 fn encoding(target: &Target) -> DepthEncoding {
-    if target.sizes.depth == Some(Format::Depth24Stencil8) { DepthEncoding::D24 } else { DepthEncoding::Float }
+    if target.sizes.depth == Some(Format::Depth24Stencil8) {
+        DepthEncoding::D24
+    } else {
+        DepthEncoding::Float
+    }
 }
 
 /// Bit i: varying i is of kind `kind`.
 fn varying_bits(draw: &Draw, kind: Interpolation) -> u32 {
     let varyings = draw.pipeline.vertex.0.varyings().iter().enumerate();
-    varyings.filter(|(_, v)| **v == kind).fold(0, |m, (i, _)| m | 1 << i)
+    varyings
+        .filter(|(_, v)| **v == kind)
+        .fold(0, |m, (i, _)| m | 1 << i)
 }
 
 fn geometry_state(target: &Target, draw: &Draw, viewport: &Viewport) -> GeometryState {
@@ -68,7 +81,12 @@ fn geometry_state(target: &Target, draw: &Draw, viewport: &Viewport) -> Geometry
 /// Attachments ∩ scissor ∩ viewport (rules §4), half-open.
 fn draw_rect(target: &Target, draw: &Draw, v: &Viewport) -> [i32; 4] {
     let edge = |at: f32| (f64::from(at) - 0.5).ceil() as i32;
-    let mut r = [edge(v.x), edge(v.y), edge(v.x + v.width), edge(v.y + v.height)];
+    let mut r = [
+        edge(v.x),
+        edge(v.y),
+        edge(v.x + v.width),
+        edge(v.y + v.height),
+    ];
     let mut cut = |x0: u32, y0: u32, x1: u32, y1: u32| {
         let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(|v| v.min(i32::MAX as u32) as i32);
         r = [r[0].max(x0), r[1].max(y0), r[2].min(x1), r[3].min(y1)];
@@ -95,8 +113,17 @@ fn draw_config<'a>(
     geometry: &GeometryState,
 ) -> DrawConfig<'a> {
     let attached = target.sizes.depth.is_some();
-    let ds = if attached { draw.pipeline.depth_stencil } else { DepthStencilState::default() };
-    let outputs = draw.pipeline.fragment.as_ref().map(|f| f.0.outputs()).unwrap_or_default();
+    let ds = if attached {
+        draw.pipeline.depth_stencil
+    } else {
+        DepthStencilState::default()
+    };
+    let outputs = draw
+        .pipeline
+        .fragment
+        .as_ref()
+        .map(|f| f.0.outputs())
+        .unwrap_or_default();
     let encoding = geometry.encoding;
     let depth_tested = attached && ds.depth.compare.reads_stored();
     let ends = [viewport.min_depth, viewport.max_depth].map(|v| encode_depth(encoding, v));
@@ -106,16 +133,21 @@ fn draw_config<'a>(
         encoding,
         rect: geometry.rect,
         attached,
-        compare: if attached { ds.depth.compare } else { CompareFunction::Always },
+        compare: if attached {
+            ds.depth.compare
+        } else {
+            CompareFunction::Always
+        },
         depth_write: attached && ds.depth.write,
-        bounds: ds.depth.bounds.map(|b| b.map(|v| encode_depth(encoding, v))),
+        bounds: ds
+            .depth
+            .bounds
+            .map(|b| b.map(|v| encode_depth(encoding, v))),
         depth_range: [ends[0].min(ends[1]), ends[0].max(ends[1])],
         depth_reversed: ends[0] > ends[1],
         hiz: gpu.config.skip && depth_tested && ds.depth.bounds.is_none() && !outputs.depth,
         plain: draw.pipeline.primitive.clip_planes.is_empty() && ds.depth.bounds.is_none(),
-        needs_depth: depth_tested
-            || (attached && ds.depth.write)
-            || shader.is_some(),
+        needs_depth: depth_tested || (attached && ds.depth.write) || shader.is_some(),
         stencil: [
             face(ds.stencil.front, draw.stencil_reference[0]),
             face(ds.stencil.back, draw.stencil_reference[1]),
@@ -132,7 +164,10 @@ fn draw_config<'a>(
         textures: draw
             .textures
             .iter()
-            .map(|b| BoundTexture { texture: texture(gpu, b.texture.0), sampler: b.sampler })
+            .map(|b| BoundTexture {
+                texture: texture(gpu, b.texture.0),
+                sampler: b.sampler,
+            })
             .collect(),
     }
 }

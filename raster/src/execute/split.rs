@@ -5,7 +5,8 @@ use crate::counters::{AccessSizes, ClientTraffic, Traffic, packed_word_bytes};
 use crate::format::Format;
 use crate::gpu::Gpu;
 use crate::texture::{
-    Block, Block4, ColorBlocks, DepthPlane, Layout, Plane, Subresource, TextureId, encode, encode_depth,
+    Block, Block4, ColorBlocks, DepthPlane, Layout, Plane, Subresource, TextureId, encode,
+    encode_depth,
 };
 use crate::tile::{ColorTile, DepthTile, TileTarget};
 
@@ -24,7 +25,8 @@ pub(super) fn lend(gpu: &mut Gpu, pass: &RenderPass) -> Lent {
     let mut take = |id: TextureId, s: Subresource| {
         let t = &mut gpu.textures[id.0 as usize];
         layout = t.layouts[s.mip as usize];
-        let plane = core::mem::replace(&mut t.planes[s.mip as usize][s.layer as usize], Plane::Lent);
+        let plane =
+            core::mem::replace(&mut t.planes[s.mip as usize][s.layer as usize], Plane::Lent);
         (plane, t.desc.format)
     };
     let mut color = Vec::new();
@@ -34,14 +36,22 @@ pub(super) fn lend(gpu: &mut Gpu, pass: &RenderPass) -> Lent {
             sizes.color[i] = Some(format);
         }
     }
-    let depth = pass.depth_stencil.as_ref().and_then(|a| match take(a.texture, a.subresource) {
-        (Plane::Depth(d), format) => {
-            sizes.depth = Some(format);
-            Some(d)
-        }
-        _ => None,
-    });
-    Lent { layout, sizes, color, depth }
+    let depth = pass
+        .depth_stencil
+        .as_ref()
+        .and_then(|a| match take(a.texture, a.subresource) {
+            (Plane::Depth(d), format) => {
+                sizes.depth = Some(format);
+                Some(d)
+            }
+            _ => None,
+        });
+    Lent {
+        layout,
+        sizes,
+        color,
+        depth,
+    }
 }
 
 /// Puts the attachments back.
@@ -64,7 +74,11 @@ impl Lent {
         let side = self.layout.tile_side(side);
         let (width, height) = (self.layout.width, self.layout.height);
         let count = self.layout.blocks() / n;
-        let mut color: Vec<_> = self.color.iter_mut().map(|(b, _)| cut_color(b, n).into_iter()).collect();
+        let mut color: Vec<_> = self
+            .color
+            .iter_mut()
+            .map(|(b, _)| cut_color(b, n).into_iter())
+            .collect();
         let mut depth = self.depth.as_mut().map(|d| cut_depth(d, n).into_iter());
         let mut tiles = Vec::with_capacity(count);
         for t in 0..count {
@@ -72,7 +86,15 @@ impl Lent {
             let depth = depth.as_mut().and_then(Iterator::next);
             let color = color.iter_mut().filter_map(Iterator::next).collect();
             if x < width && y < height {
-                tiles.push(TileTarget { x, y, side, width, height, depth, color });
+                tiles.push(TileTarget {
+                    x,
+                    y,
+                    side,
+                    width,
+                    height,
+                    depth,
+                    color,
+                });
             }
         }
         tiles
@@ -92,7 +114,12 @@ fn cut_color(blocks: &mut ColorBlocks, n: usize) -> Vec<ColorTile<'_>> {
 fn cut_depth(d: &mut DepthPlane, n: usize) -> Vec<DepthTile<'_>> {
     let blocks = d.depth.chunks_mut(n).zip(d.stencil.chunks_mut(n));
     let hiz = d.hiz.min.chunks_mut(n).zip(d.hiz.max.chunks_mut(n));
-    let tile = |((depth, stencil), (hiz_min, hiz_max))| DepthTile { depth, stencil, hiz_min, hiz_max };
+    let tile = |((depth, stencil), (hiz_min, hiz_max))| DepthTile {
+        depth,
+        stencil,
+        hiz_min,
+        hiz_max,
+    };
     blocks.zip(hiz).map(tile).collect()
 }
 
@@ -108,17 +135,24 @@ pub(super) struct Fill {
 
 /// What the load operations store.
 pub(super) fn loads(pass: &RenderPass, sizes: &AccessSizes) -> Fill {
-    let color = pass.color.iter().zip(sizes.color.iter().flatten()).map(|(a, &f)| match a.load {
-        LoadOp::Load => None,
-        LoadOp::Clear(v) => Some(encode(f, v)),
-        LoadOp::DontCare => Some([0; 4]),
-    });
+    let color = pass
+        .color
+        .iter()
+        .zip(sizes.color.iter().flatten())
+        .map(|(a, &f)| match a.load {
+            LoadOp::Load => None,
+            LoadOp::Clear(v) => Some(encode(f, v)),
+            LoadOp::DontCare => Some([0; 4]),
+        });
     let ds = pass.depth_stencil.as_ref();
     Fill {
         color: color.collect(),
         depth: ds.and_then(|a| match a.depth_load {
             LoadOp::Load => None,
-            LoadOp::Clear(v) => Some(encode_depth(sizes.depth.unwrap_or(Format::Depth24Stencil8), v)),
+            LoadOp::Clear(v) => Some(encode_depth(
+                sizes.depth.unwrap_or(Format::Depth24Stencil8),
+                v,
+            )),
             LoadOp::DontCare => Some(0),
         }),
         stencil: ds.and_then(|a| match a.stencil_load {
@@ -134,7 +168,11 @@ pub(super) fn stores(pass: &RenderPass) -> Fill {
     let gone = |s: StoreOp| s == StoreOp::Discard;
     let ds = pass.depth_stencil.as_ref();
     Fill {
-        color: pass.color.iter().map(|a| gone(a.store).then_some([0; 4])).collect(),
+        color: pass
+            .color
+            .iter()
+            .map(|a| gone(a.store).then_some([0; 4]))
+            .collect(),
         depth: ds.and_then(|a| gone(a.depth_store).then_some(0)),
         stencil: ds.and_then(|a| gone(a.stencil_store).then_some(0)),
     }
@@ -149,7 +187,12 @@ pub(super) fn clear_traffic(pass: &RenderPass, lent: &Lent) -> ClientTraffic {
         ..Traffic::default()
     };
     let mut t = ClientTraffic::default();
-    for ((slot, a), f) in t.color.iter_mut().zip(&pass.color).zip(lent.sizes.color.iter().flatten()) {
+    for ((slot, a), f) in t
+        .color
+        .iter_mut()
+        .zip(&pass.color)
+        .zip(lent.sizes.color.iter().flatten())
+    {
         *slot = writes(matches!(a.load, LoadOp::Clear(_)), f.bytes());
     }
     if let (Some(a), Some(f)) = (&pass.depth_stencil, lent.sizes.depth) {
@@ -157,8 +200,11 @@ pub(super) fn clear_traffic(pass: &RenderPass, lent: &Lent) -> ClientTraffic {
         t.stencil = writes(matches!(a.stencil_load, LoadOp::Clear(_)), 1);
         let words = t.z.write_accesses + t.stencil.write_accesses;
         let word = packed_word_bytes(f);
-        t.packed_depth_stencil =
-            Traffic { write_accesses: words, write_bytes: words * word, ..Traffic::default() };
+        t.packed_depth_stencil = Traffic {
+            write_accesses: words,
+            write_bytes: words * word,
+            ..Traffic::default()
+        };
     }
     t
 }
@@ -166,7 +212,12 @@ pub(super) fn clear_traffic(pass: &RenderPass, lent: &Lent) -> ClientTraffic {
 impl Fill {
     /// Fills a tile.
     pub(super) fn apply(&self, tile: &mut TileTarget<'_>, sizes: &AccessSizes) {
-        for ((tile, value), f) in tile.color.iter_mut().zip(&self.color).zip(sizes.color.iter().flatten()) {
+        for ((tile, value), f) in tile
+            .color
+            .iter_mut()
+            .zip(&self.color)
+            .zip(sizes.color.iter().flatten())
+        {
             if let Some(v) = value {
                 fill_color(tile, *f, *v);
             }
@@ -186,7 +237,9 @@ impl Fill {
 fn fill_color(tile: &mut ColorTile<'_>, f: Format, v: [u32; 4]) {
     match tile {
         ColorTile::B8(b) => b.fill(Block([v[0] as u8; 64])),
-        ColorTile::B16(b) if f == Format::Rg8Unorm => b.fill(Block([(v[0] | v[1] << 8) as u16; 64])),
+        ColorTile::B16(b) if f == Format::Rg8Unorm => {
+            b.fill(Block([(v[0] | v[1] << 8) as u16; 64]))
+        }
         ColorTile::B16(b) => b.fill(Block([v[0] as u16; 64])),
         ColorTile::B32(b) if f == Format::Rgba8Unorm => {
             b.fill(Block([u32::from_le_bytes(v.map(|c| c as u8)); 64]));

@@ -3,7 +3,10 @@
 use super::bin::{Bins, TileGrid};
 use super::clip::{self, ClipVertex};
 use super::setup::{self, Piece, Triangle};
-use super::shade::{BEYOND_FAR, NON_FINITE, PLANE_MASK, ScreenVertex, ShadedVertices, VIEW_MASK, W_NOT_POSITIVE, project_one};
+use super::shade::{
+    BEYOND_FAR, NON_FINITE, PLANE_MASK, ScreenVertex, ShadedVertices, VIEW_MASK, W_NOT_POSITIVE,
+    project_one,
+};
 use super::{GeometryState, widen};
 use crate::MAX_VARYINGS;
 use crate::counters::PrimitiveCounters;
@@ -44,7 +47,11 @@ impl Chunk {
     /// Screen position of a triangle's vertex.
     #[inline(always)]
     pub(crate) fn screen(&self, shaded: &ShadedVertices, v: u32) -> ScreenVertex {
-        if v & OWN_VERTEX == 0 { shaded.screen(v) } else { self.own.screen(v & !OWN_VERTEX) }
+        if v & OWN_VERTEX == 0 {
+            shaded.screen(v)
+        } else {
+            self.own.screen(v & !OWN_VERTEX)
+        }
     }
 
     /// Varying `i` of `n` of a triangle's vertex.
@@ -59,13 +66,22 @@ impl Chunk {
 
     /// Clip-space position of a triangle's vertex.
     pub(crate) fn clip_position(&self, shaded: &ShadedVertices, v: u32) -> [f32; 4] {
-        if v & OWN_VERTEX == 0 { shaded.clip_position(v) } else { self.own.clip_position(v & !OWN_VERTEX) }
+        if v & OWN_VERTEX == 0 {
+            shaded.clip_position(v)
+        } else {
+            self.own.clip_position(v & !OWN_VERTEX)
+        }
     }
 }
 
 /// Assembles, clips, sets up and bins the primitives of `input`, in the memory of
 /// an old chunk.
-pub(crate) fn process_chunk(level: SimdLevel, input: &ChunkInput<'_>, grid: &TileGrid, old: Chunk) -> Chunk {
+pub(crate) fn process_chunk(
+    level: SimdLevel,
+    input: &ChunkInput<'_>,
+    grid: &TileGrid,
+    old: Chunk,
+) -> Chunk {
     let mut chunk = old;
     chunk.triangles.clear();
     chunk.own.clear();
@@ -139,7 +155,13 @@ impl Assembler<'_> {
             return;
         }
         let far = any & BEYOND_FAR != 0;
-        self.push(Piece { v, primitive: self.input.first_primitive + p, piece: 0, widened: false, far });
+        self.push(Piece {
+            v,
+            primitive: self.input.first_primitive + p,
+            piece: 0,
+            widened: false,
+            far,
+        });
     }
 
     fn unusual_triangle(&mut self, p: u32, v: [u32; 3], any: u16, all: u16) {
@@ -160,7 +182,10 @@ impl Assembler<'_> {
         for (i, slot) in varyings[..self.input.state.varyings].iter_mut().enumerate() {
             *slot = s.varying(i, v);
         }
-        ClipVertex { position: s.clip_position(v), varyings }
+        ClipVertex {
+            position: s.clip_position(v),
+            varyings,
+        }
     }
 
     fn clip_triangle(&mut self, p: u32, v: [u32; 3], mask: u16) {
@@ -188,12 +213,19 @@ impl Assembler<'_> {
     /// The fan of a clipped polygon, unless rounding has thrown a vertex out of
     /// the range that set-up can take (rules §3.2).
     fn push_fan(&mut self, p: u32, poly: &[ClipVertex]) {
-        let screen: Vec<ScreenVertex> = poly.iter().map(|c| project_one(self.input.state, &c.position)).collect();
+        let screen: Vec<ScreenVertex> = poly
+            .iter()
+            .map(|c| project_one(self.input.state, &c.position))
+            .collect();
         if !screen.iter().all(is_usable) {
             self.chunk.counters.non_finite += 1;
             return;
         }
-        let fan: Vec<u32> = poly.iter().zip(screen).map(|(c, s)| self.push_own(c, s)).collect();
+        let fan: Vec<u32> = poly
+            .iter()
+            .zip(screen)
+            .map(|(c, s)| self.push_own(c, s))
+            .collect();
         for k in 1..fan.len() - 1 {
             self.push(Piece {
                 v: [fan[0], fan[k], fan[k + 1]],
@@ -249,7 +281,8 @@ impl Assembler<'_> {
             self.chunk.counters.frustum_culled += 1;
         } else {
             let c = self.clip_vertex(v);
-            let corners = widen::point_corners(self.input.shaded.screen(v), self.input.state.point_size);
+            let corners =
+                widen::point_corners(self.input.shaded.screen(v), self.input.state.point_size);
             self.push_quad(p, corners, [&c; 4]);
         }
     }
@@ -259,7 +292,13 @@ impl Assembler<'_> {
         let far = values.iter().any(|v| is_beyond_far(v));
         for (piece, v) in [[a, b, c], [a, c, d]].into_iter().enumerate() {
             let primitive = self.input.first_primitive + p;
-            self.push(Piece { v, primitive, piece: piece as u16, widened: true, far });
+            self.push(Piece {
+                v,
+                primitive,
+                piece: piece as u16,
+                widened: true,
+                far,
+            });
         }
     }
 

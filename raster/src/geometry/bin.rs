@@ -13,7 +13,11 @@ pub(crate) struct TileGrid {
 
 impl TileGrid {
     pub(crate) fn new(side: u32, width: u32, height: u32) -> Self {
-        Self { shift: side.trailing_zeros(), across: width.div_ceil(side), down: height.div_ceil(side) }
+        Self {
+            shift: side.trailing_zeros(),
+            across: width.div_ceil(side),
+            down: height.div_ceil(side),
+        }
     }
 
     pub(crate) fn tiles(&self) -> usize {
@@ -97,7 +101,8 @@ fn for_each_tile(t: &Triangle, rect: [i32; 4], grid: &TileGrid, mut f: impl FnMu
         t.c[k] + up + along
     });
     for ty in ty0..=ty1 {
-        let row: [f64; 3] = core::array::from_fn(|k| corner[k] + step[k].0 * (f64::from(ty) * side));
+        let row: [f64; 3] =
+            core::array::from_fn(|k| corner[k] + step[k].0 * (f64::from(ty) * side));
         for tx in tx0..=tx1 {
             let x = f64::from(tx) * side;
             let outside = (row[0] - step[0].1 * x < 0.0)

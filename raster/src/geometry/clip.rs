@@ -52,7 +52,12 @@ fn cut(state: &GeometryState, plane: usize, i: &ClipVertex, o: &ClipVertex) -> C
 }
 
 /// Clips a polygon in place against the planes of `mask`.
-pub(super) fn polygon(state: &GeometryState, mask: u16, poly: &mut Vec<ClipVertex>, spare: &mut Vec<ClipVertex>) {
+pub(super) fn polygon(
+    state: &GeometryState,
+    mask: u16,
+    poly: &mut Vec<ClipVertex>,
+    spare: &mut Vec<ClipVertex>,
+) {
     for plane in (0..PLANES).filter(|p| mask >> p & 1 != 0) {
         spare.clear();
         for (k, a) in poly.iter().enumerate() {
@@ -73,7 +78,12 @@ pub(super) fn polygon(state: &GeometryState, mask: u16, poly: &mut Vec<ClipVerte
 }
 
 /// Clips a segment; `None` where nothing is left.
-pub(super) fn segment(state: &GeometryState, mask: u16, mut a: ClipVertex, mut b: ClipVertex) -> Option<[ClipVertex; 2]> {
+pub(super) fn segment(
+    state: &GeometryState,
+    mask: u16,
+    mut a: ClipVertex,
+    mut b: ClipVertex,
+) -> Option<[ClipVertex; 2]> {
     for plane in (0..PLANES).filter(|p| mask >> p & 1 != 0) {
         let inside = |v: &ClipVertex| distance(state, plane, &v.position) >= 0.0;
         match (inside(&a), inside(&b)) {

@@ -72,6 +72,12 @@ impl ViewportTransform {
             (GUARD_MAX - center[1]) / half[1],
             (center[1] - GUARD_MIN) / half[1],
         ];
-        Self { half, center, depth_scale: v.max_depth - v.min_depth, depth_offset: v.min_depth, guard }
+        Self {
+            half,
+            center,
+            depth_scale: v.max_depth - v.min_depth,
+            depth_offset: v.min_depth,
+            guard,
+        }
     }
 }

@@ -71,7 +71,12 @@ impl Triangle {
 }
 
 /// Sets up `pieces` (at most 16) and appends what survives to the chunk.
-pub(super) fn packet(level: SimdLevel, input: &ChunkInput<'_>, chunk: &mut Chunk, pieces: &[Piece]) {
+pub(super) fn packet(
+    level: SimdLevel,
+    input: &ChunkInput<'_>,
+    chunk: &mut Chunk,
+    pieces: &[Piece],
+) {
     with_lanes!(level, l => packet_lanes(l, input, chunk, pieces));
 }
 
@@ -110,7 +115,10 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, piece
     let state = input.state;
     let q = gather(l, input, chunk, pieces);
     let present = Mask::from_bits(l, ((1u32 << pieces.len()) - 1) as u16);
-    let widened = pieces.iter().enumerate().fold(0u16, |m, (i, p)| m | u16::from(p.widened) << i);
+    let widened = pieces
+        .iter()
+        .enumerate()
+        .fold(0u16, |m, (i, p)| m | u16::from(p.widened) << i);
 
     let area = doubled_area(&q);
     let zero = F64::splat(l, 0.0);
@@ -118,7 +126,14 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, piece
     let positive = zero.lt(area);
     let degenerate = present & !(negative | positive);
     let ccw_front = state.front_face == FrontFace::Ccw;
-    let front = Mask::from_bits(l, if ccw_front { negative.bits() } else { positive.bits() } | widened);
+    let front = Mask::from_bits(
+        l,
+        if ccw_front {
+            negative.bits()
+        } else {
+            positive.bits()
+        } | widened,
+    );
     let culled = facing_to_cull(state, front.bits()) & !widened & (present & !degenerate).bits();
     let alive = present.bits() & !degenerate.bits() & !culled;
     let c = &mut chunk.counters;
@@ -132,7 +147,17 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, piece
     let depth = DepthPlanes::new(state, &q, chunk, alive);
     let bounds = pixel_bounds(&q);
     let alive = alive & !covers_nothing(l, &edges, &bounds);
-    emit(chunk, pieces, alive, front.bits(), &edges, &depth, &bounds, &q, state.depth_clamp);
+    emit(
+        chunk,
+        pieces,
+        alive,
+        front.bits(),
+        &edges,
+        &depth,
+        &bounds,
+        &q,
+        state.depth_clamp,
+    );
 }
 
 fn facing_to_cull(state: &GeometryState, front: u16) -> u16 {
@@ -146,8 +171,14 @@ fn facing_to_cull(state: &GeometryState, front: u16) -> u16 {
 /// `(X1−X0)(Y2−Y0) − (X2−X0)(Y1−Y0)`, exact.
 #[inline(always)]
 fn doubled_area<L: Lanes>(q: &Corners<L>) -> F64<L> {
-    let (ax, ay) = (F64::from_f32(q.x[1] - q.x[0]), F64::from_f32(q.y[1] - q.y[0]));
-    let (bx, by) = (F64::from_f32(q.x[2] - q.x[0]), F64::from_f32(q.y[2] - q.y[0]));
+    let (ax, ay) = (
+        F64::from_f32(q.x[1] - q.x[0]),
+        F64::from_f32(q.y[1] - q.y[0]),
+    );
+    let (bx, by) = (
+        F64::from_f32(q.x[2] - q.x[0]),
+        F64::from_f32(q.y[2] - q.y[0]),
+    );
     ax * by - bx * ay
 }
 
@@ -160,7 +191,11 @@ struct Edges {
 impl Edges {
     #[inline(always)]
     fn new<L: Lanes>(l: L, q: &Corners<L>, negative: Mask<L>) -> Self {
-        let mut e = Self { c: [[0.0; LANES]; 3], dx: [[0; LANES]; 3], dy: [[0; LANES]; 3] };
+        let mut e = Self {
+            c: [[0.0; LANES]; 3],
+            dx: [[0; LANES]; 3],
+            dy: [[0; LANES]; 3],
+        };
         let zero = F32::splat(l, 0.0);
         for k in 0..3 {
             let (a, b) = (k, (k + 1) % 3);
@@ -200,7 +235,8 @@ fn covers_nothing<L: Lanes>(l: L, e: &Edges, bounds: &[[i32; LANES]; 4]) -> u16 
     let mut outside = [I32::splat(l, 0); 4];
     for k in 0..3 {
         let (dx, dy) = (I32::from_array(l, &e.dx[k]), I32::from_array(l, &e.dy[k]));
-        let at = F64::from_array(l, &e.c[k]) + (F64::from_f32(dx.to_f32()) * y - F64::from_f32(dy.to_f32()) * x);
+        let at = F64::from_array(l, &e.c[k])
+            + (F64::from_f32(dx.to_f32()) * y - F64::from_f32(dy.to_f32()) * x);
         let v = at.round_to_i32(EDGE_LIMIT);
         outside[0] = outside[0] | v;
         outside[1] = outside[1] | (v - dy);
@@ -233,14 +269,24 @@ impl DepthPlanes {
                 let (sx, sy) = (gx * D24_SCALE, gy * D24_SCALE);
                 steep = (beyond(sx) | beyond(sy)) & alive;
                 chunk.counters.steep_depth_planes += u64::from(steep.count_ones());
-                [sx.round_to_i32(D24_SLOPE_LIMIT).to_array(), sy.round_to_i32(D24_SLOPE_LIMIT).to_array()]
+                [
+                    sx.round_to_i32(D24_SLOPE_LIMIT).to_array(),
+                    sy.round_to_i32(D24_SLOPE_LIMIT).to_array(),
+                ]
             }
-            DepthEncoding::Float => {
-                [gx.to_f32().to_bits().to_i32().to_array(), gy.to_f32().to_bits().to_i32().to_array()]
-            }
+            DepthEncoding::Float => [
+                gx.to_f32().to_bits().to_i32().to_array(),
+                gy.to_f32().to_bits().to_i32().to_array(),
+            ],
         };
         let (zx, zy) = (gx.to_array(), gy.to_array());
-        Self { zx, zy, bias: biases(state, &zx, &zy, q), slope, steep }
+        Self {
+            zx,
+            zy,
+            bias: biases(state, &zx, &zy, q),
+            slope,
+            steep,
+        }
     }
 }
 
@@ -272,22 +318,38 @@ fn gradients<L: Lanes>(q: &Corners<L>, v: &[F32<L>; 3]) -> (F64<L>, F64<L>) {
 
 /// Depth bias of each triangle (rules §5).
 #[inline(always)]
-fn biases<L: Lanes>(state: &GeometryState, zx: &[f64; LANES], zy: &[f64; LANES], q: &Corners<L>) -> [f64; LANES] {
+fn biases<L: Lanes>(
+    state: &GeometryState,
+    zx: &[f64; LANES],
+    zy: &[f64; LANES],
+    q: &Corners<L>,
+) -> [f64; LANES] {
     let b = state.bias;
     if b.constant == 0.0 && b.slope == 0.0 {
         return [0.0; LANES];
     }
     let z = [q.z[0].to_array(), q.z[1].to_array(), q.z[2].to_array()];
     core::array::from_fn(|i| {
-        let largest = z.iter().map(|z| z[i].abs()).fold(0.0f32, |m, v| if v > m { v } else { m });
+        let largest = z
+            .iter()
+            .map(|z| z[i].abs())
+            .fold(0.0f32, |m, v| if v > m { v } else { m });
         let step = match state.encoding {
             DepthEncoding::D24 => 1.0 / 16_777_216.0,
             DepthEncoding::Float => float_step(largest),
         };
-        let slope = if zx[i].abs() > zy[i].abs() { zx[i].abs() } else { zy[i].abs() };
+        let slope = if zx[i].abs() > zy[i].abs() {
+            zx[i].abs()
+        } else {
+            zy[i].abs()
+        };
         let bias = f64::from(b.constant) * step + f64::from(b.slope) * slope;
         let limit = f64::from(b.clamp);
-        if (limit > 0.0 && bias > limit) || (limit < 0.0 && bias < limit) { limit } else { bias }
+        if (limit > 0.0 && bias > limit) || (limit < 0.0 && bias < limit) {
+            limit
+        } else {
+            bias
+        }
     })
 }
 
@@ -304,7 +366,12 @@ fn float_step(v: f32) -> f64 {
 /// First and last column and row whose centres can be covered.
 #[inline(always)]
 fn pixel_bounds<L: Lanes>(q: &Corners<L>) -> [[i32; LANES]; 4] {
-    [first_pixel(&q.x), first_pixel(&q.y), last_pixel(&q.x), last_pixel(&q.y)]
+    [
+        first_pixel(&q.x),
+        first_pixel(&q.y),
+        last_pixel(&q.x),
+        last_pixel(&q.y),
+    ]
 }
 
 #[inline(always)]
@@ -320,7 +387,10 @@ fn last_pixel<L: Lanes>(v: &[F32<L>; 3]) -> [i32; LANES] {
 }
 
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "the columns of one table; splitting it would only hide that")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the columns of one table; splitting it would only hide that"
+)]
 fn emit<L: Lanes>(
     chunk: &mut Chunk,
     pieces: &[Piece],
@@ -341,7 +411,12 @@ fn emit<L: Lanes>(
             c: [e.c[0][i], e.c[1][i], e.c[2][i]],
             dx: [e.dx[0][i], e.dx[1][i], e.dx[2][i]],
             dy: [e.dy[0][i], e.dy[1][i], e.dy[2][i]],
-            bounds: [bounds[0][i] as i16, bounds[1][i] as i16, bounds[2][i] as i16, bounds[3][i] as i16],
+            bounds: [
+                bounds[0][i] as i16,
+                bounds[1][i] as i16,
+                bounds[2][i] as i16,
+                bounds[3][i] as i16,
+            ],
             zx: d.zx[i],
             zy: d.zy[i],
             bias: d.bias[i],

@@ -61,14 +61,21 @@ impl ShadedVertices {
     /// Room for `n` vertices, rounded up to whole packets.
     pub(crate) fn resize(&mut self, n: usize, varyings: usize) {
         self.padded = n.next_multiple_of(LANES);
-        self.clip.iter_mut().for_each(|c| c.resize(self.padded, 0.0));
+        self.clip
+            .iter_mut()
+            .for_each(|c| c.resize(self.padded, 0.0));
         self.varyings.resize(self.padded * varyings, 0.0);
         self.screen.resize(self.padded, ScreenVertex::default());
         self.codes.resize(self.padded, 0);
     }
 
     /// Appends a vertex that clipping or widening made.
-    pub(super) fn push(&mut self, position: [f32; 4], varyings: &[f32], screen: ScreenVertex) -> u32 {
+    pub(super) fn push(
+        &mut self,
+        position: [f32; 4],
+        varyings: &[f32],
+        screen: ScreenVertex,
+    ) -> u32 {
         for (c, p) in self.clip.iter_mut().zip(position) {
             c.push(p);
         }
@@ -91,8 +98,15 @@ impl ShadedVertices {
     /// Splits into runs of `n` vertices (whole packets).
     pub(crate) fn parts(&mut self, n: usize) -> Vec<ShadedPart<'_>> {
         let [x, y, z, w] = &mut self.clip;
-        let mut columns: Vec<_> = self.varyings.chunks_mut(self.padded.max(1)).map(|v| v.chunks_mut(n)).collect();
-        let clip = x.chunks_mut(n).zip(y.chunks_mut(n)).zip(z.chunks_mut(n).zip(w.chunks_mut(n)));
+        let mut columns: Vec<_> = self
+            .varyings
+            .chunks_mut(self.padded.max(1))
+            .map(|v| v.chunks_mut(n))
+            .collect();
+        let clip = x
+            .chunks_mut(n)
+            .zip(y.chunks_mut(n))
+            .zip(z.chunks_mut(n).zip(w.chunks_mut(n)));
         clip.zip(self.screen.chunks_mut(n).zip(self.codes.chunks_mut(n)))
             .map(|(((x, y), (z, w)), (screen, codes))| ShadedPart {
                 clip: [x, y, z, w],
@@ -112,7 +126,10 @@ pub(crate) fn shade_part(
     batch: &VertexBatch<'_>,
     out: &mut ShadedPart<'_>,
 ) {
-    let mut slots = VertexOutput { position: out.clip.each_mut().map(|c| &mut **c), varyings: &mut out.varyings };
+    let mut slots = VertexOutput {
+        position: out.clip.each_mut().map(|c| &mut **c),
+        varyings: &mut out.varyings,
+    };
     shader.shade_batch(level, batch, &mut slots);
     with_lanes!(level, l => project(l, state, out));
 }
@@ -122,7 +139,14 @@ fn project<L: Lanes>(l: L, state: &GeometryState, out: &mut ShadedPart<'_>) {
     for at in (0..out.codes.len()).step_by(LANES) {
         let p: [F32<L>; 4] = each4(
             #[inline(always)]
-            |c| F32::from_array(l, out.clip[c][at..at + LANES].try_into().expect("whole packet")),
+            |c| {
+                F32::from_array(
+                    l,
+                    out.clip[c][at..at + LANES]
+                        .try_into()
+                        .expect("whole packet"),
+                )
+            },
         );
         let codes = clip_codes(l, state, &p);
         out.codes[at..at + LANES].copy_from_slice(&codes);
@@ -148,7 +172,11 @@ fn clip_codes<L: Lanes>(l: L, state: &GeometryState, p: &[F32<L>; 4]) -> [u16; L
         #[inline(always)]
         |c| F64::from_f32(p[c]),
     );
-    let near = if state.depth_clamp { zd + wd * clip::DEPTH_GUARD } else { zd };
+    let near = if state.depth_clamp {
+        zd + wd * clip::DEPTH_GUARD
+    } else {
+        zd
+    };
     let distances = [
         wd - f64::from(clip::W_MIN),
         near,
@@ -178,21 +206,38 @@ fn transpose(bits: &[u16; 14]) -> [u16; LANES] {
     if bits.iter().all(|&b| b == 0) {
         return [0; LANES];
     }
-    core::array::from_fn(|lane| bits.iter().enumerate().fold(0, |c, (k, b)| c | (b >> lane & 1) << k))
+    core::array::from_fn(|lane| {
+        bits.iter()
+            .enumerate()
+            .fold(0, |c, (k, b)| c | (b >> lane & 1) << k)
+    })
 }
 
 /// Rules §3.1, §3.2.
 #[inline(always)]
-fn to_screen<L: Lanes>(l: L, state: &GeometryState, p: &[F32<L>; 4], out: &mut [ScreenVertex; LANES]) {
+fn to_screen<L: Lanes>(
+    l: L,
+    state: &GeometryState,
+    p: &[F32<L>; 4],
+    out: &mut [ScreenVertex; LANES],
+) {
     let v = &state.viewport;
     let [x, y, z, w] = *p;
     let sx = F32::splat(l, v.center[0]) + (x / w) * v.half[0];
     let sy = F32::splat(l, v.center[1]) - (y / w) * v.half[1];
     let sz = (z / w) * v.depth_scale + v.depth_offset;
-    let (sx, sy) = ((sx * 256.0).round_ties_even().to_array(), (sy * 256.0).round_ties_even().to_array());
+    let (sx, sy) = (
+        (sx * 256.0).round_ties_even().to_array(),
+        (sy * 256.0).round_ties_even().to_array(),
+    );
     let (sz, iw) = (sz.to_array(), w.recip().to_array());
     for i in 0..LANES {
-        out[i] = ScreenVertex { x: sx[i], y: sy[i], z: sz[i], inv_w: iw[i] };
+        out[i] = ScreenVertex {
+            x: sx[i],
+            y: sy[i],
+            z: sz[i],
+            inv_w: iw[i],
+        };
     }
 }
 

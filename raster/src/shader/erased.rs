@@ -1,15 +1,20 @@
 //! Shaders behind a pointer: one virtual call a batch or block, inside which
 //! everything is compiled for the level.
 
+use super::Interpolation;
 use super::fragment::{Fragment, FragmentOutputs, FragmentShader, PACKETS, ShadeBlock};
 use super::vertex::{Vertex, VertexBatch, VertexOutput, VertexShader};
-use super::Interpolation;
 use crate::MAX_VARYINGS;
 use crate::simd::{F32, LANES, Lanes, SimdLevel, with_lanes};
 
 pub(crate) trait ErasedVertexShader: Send + Sync {
     fn varyings(&self) -> &[Interpolation];
-    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_, '_>);
+    fn shade_batch(
+        &self,
+        level: SimdLevel,
+        batch: &VertexBatch<'_>,
+        out: &mut VertexOutput<'_, '_>,
+    );
 }
 
 pub(crate) trait ErasedFragmentShader: Send + Sync {
@@ -22,7 +27,12 @@ impl<V: VertexShader> ErasedVertexShader for V {
         VertexShader::varyings(self)
     }
 
-    fn shade_batch(&self, level: SimdLevel, batch: &VertexBatch<'_>, out: &mut VertexOutput<'_, '_>) {
+    fn shade_batch(
+        &self,
+        level: SimdLevel,
+        batch: &VertexBatch<'_>,
+        out: &mut VertexOutput<'_, '_>,
+    ) {
         with_lanes!(level, l => shade_batch(self, l, batch, out));
     }
 }
@@ -50,7 +60,13 @@ fn shade_batch<L: Lanes, V: VertexShader>(
         // The last packet repeats its first vertex, so that every lane is valid.
         let mut ids = [chunk[0]; LANES];
         ids[..chunk.len()].copy_from_slice(chunk);
-        let mut v = Vertex { l, batch, ids, position: [F32::splat(l, 0.0); 4], varyings: &mut varyings[..n] };
+        let mut v = Vertex {
+            l,
+            batch,
+            ids,
+            position: [F32::splat(l, 0.0); 4],
+            varyings: &mut varyings[..n],
+        };
         shader.shade(l, &mut v);
         let at = k * LANES..(k + 1) * LANES;
         for (slot, p) in out.position.iter_mut().zip(v.position) {

@@ -53,8 +53,11 @@ pub(crate) struct PacketOutput {
 }
 
 impl PacketOutput {
-    pub(crate) const EMPTY: Self =
-        Self { color: [[[0.0; LANES]; 4]; MAX_COLOR_ATTACHMENTS], depth: [0.0; LANES], discarded: 0 };
+    pub(crate) const EMPTY: Self = Self {
+        color: [[[0.0; LANES]; 4]; MAX_COLOR_ATTACHMENTS],
+        depth: [0.0; LANES],
+        discarded: 0,
+    };
 }
 
 /// Texture traffic of a shader, by slot.
@@ -103,8 +106,12 @@ pub struct Fragment<'a, L: Lanes> {
 }
 
 /// Columns and rows of the lanes of a packet.
-const IX: [f32; LANES] = [0., 1., 2., 3., 4., 5., 6., 7., 0., 1., 2., 3., 4., 5., 6., 7.];
-const IY: [f32; LANES] = [0., 0., 0., 0., 0., 0., 0., 0., 1., 1., 1., 1., 1., 1., 1., 1.];
+const IX: [f32; LANES] = [
+    0., 1., 2., 3., 4., 5., 6., 7., 0., 1., 2., 3., 4., 5., 6., 7.,
+];
+const IY: [f32; LANES] = [
+    0., 0., 0., 0., 0., 0., 0., 0., 1., 1., 1., 1., 1., 1., 1., 1.,
+];
 
 impl<'a, L: Lanes> Fragment<'a, L> {
     #[inline(always)]
@@ -155,7 +162,11 @@ impl<'a, L: Lanes> Fragment<'a, L> {
             return F32::splat(self.l, 0.0);
         }
         let v = self.plane(i);
-        if self.planes.perspective >> i & 1 != 0 { v * self.w } else { v }
+        if self.planes.perspective >> i & 1 != 0 {
+            v * self.w
+        } else {
+            v
+        }
     }
 
     /// Clip-space w of each fragment; 1 where no varying is interpolated with perspective.
@@ -238,12 +249,14 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     /// Integer pixel column of each lane.
     #[inline(always)]
     pub fn column(&self) -> I32<L> {
-        I32::splat(self.l, self.x as i32) + I32::from_array(self.l, &[0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7])
+        I32::splat(self.l, self.x as i32)
+            + I32::from_array(self.l, &[0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7])
     }
 
     /// Integer pixel row of each lane.
     #[inline(always)]
     pub fn row(&self) -> I32<L> {
-        I32::splat(self.l, self.y as i32) + I32::from_array(self.l, &[0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1])
+        I32::splat(self.l, self.y as i32)
+            + I32::from_array(self.l, &[0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1])
     }
 }

@@ -15,9 +15,12 @@ mod vertex;
 pub(crate) use erased::{ErasedFragmentShader, ErasedVertexShader};
 pub use fragment::{Fragment, FragmentOutputs, FragmentShader};
 pub(crate) use fragment::{PACKETS, PacketOutput, ShadeBlock, ShaderEvents, VaryingPlanes};
-pub use scalar::{ScalarFragment, ScalarFragmentOutput, ScalarVertex, ScalarVertexOutput, per_fragment, per_vertex};
-pub(crate) use vertex::{VertexBatch, VertexOutput};
+pub use scalar::{
+    ScalarFragment, ScalarFragmentOutput, ScalarVertex, ScalarVertexOutput, per_fragment,
+    per_vertex,
+};
 pub use vertex::{Vertex, VertexShader};
+pub(crate) use vertex::{VertexBatch, VertexOutput};
 
 use std::sync::Arc;
 

@@ -71,7 +71,11 @@ pub fn per_vertex<F>(varyings: &[Interpolation], shade: F) -> VertexStage
 where
     F: Fn(&ScalarVertex<'_>) -> ScalarVertexOutput + Send + Sync + 'static,
 {
-    PerVertex { varyings: varyings.to_vec(), shade }.into()
+    PerVertex {
+        varyings: varyings.to_vec(),
+        shade,
+    }
+    .into()
 }
 
 /// A fragment shader from a closure that sees one fragment.
@@ -140,7 +144,10 @@ where
         let (depth, w) = (f.depth().to_array(), f.w().to_array());
         let (columns, rows) = (f.column().to_array(), f.row().to_array());
         let mut discarded = 0u16;
-        for lane in (0..LANES).filter(|lane| f.live().bits() >> lane & 1 != 0).collect::<Vec<_>>() {
+        for lane in (0..LANES)
+            .filter(|lane| f.live().bits() >> lane & 1 != 0)
+            .collect::<Vec<_>>()
+        {
             let out = (self.shade)(&ScalarFragment {
                 varyings: core::array::from_fn(|i| varyings[i][lane]),
                 x: columns[lane] as u32,

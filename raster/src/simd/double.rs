@@ -2,7 +2,9 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdFloat as _, SimdMask as _, f64x8, i32x16, i64x8};
+use fearless_simd::{
+    Bytes as _, Simd, SimdBase as _, SimdFloat as _, SimdMask as _, f64x8, i32x16, i64x8,
+};
 
 use super::{F32, I32, LANES, Lanes, Mask};
 
@@ -40,7 +42,11 @@ impl<L: Lanes> F64<L> {
 
     #[inline(always)]
     pub(crate) fn from_array(l: L, a: &[f64; LANES]) -> Self {
-        Self { lo: f64x8::from_slice(l.isa(), &a[..8]), hi: f64x8::from_slice(l.isa(), &a[8..]), l }
+        Self {
+            lo: f64x8::from_slice(l.isa(), &a[..8]),
+            hi: f64x8::from_slice(l.isa(), &a[8..]),
+            l,
+        }
     }
 
     #[inline(always)]
@@ -63,7 +69,11 @@ impl<L: Lanes> F64<L> {
 
     #[inline(always)]
     pub(crate) fn floor(self) -> Self {
-        Self { lo: self.lo.floor(), hi: self.hi.floor(), l: self.l }
+        Self {
+            lo: self.lo.floor(),
+            hi: self.hi.floor(),
+            l: self.l,
+        }
     }
 
     #[inline(always)]
@@ -83,7 +93,8 @@ impl<L: Lanes> F64<L> {
         let lo = isa.select_f64x8(lo.simd_gt(min), lo, min);
         let hi = isa.select_f64x8(self.hi.simd_lt(max), self.hi, max);
         let hi = isa.select_f64x8(hi.simd_gt(min), hi, min);
-        let (lo, hi): (i64x8<L::Isa>, i64x8<L::Isa>) = ((lo + magic).bitcast(), (hi + magic).bitcast());
+        let (lo, hi): (i64x8<L::Isa>, i64x8<L::Isa>) =
+            ((lo + magic).bitcast(), (hi + magic).bitcast());
         let v: i32x16<L::Isa> = isa.narrow_i64x8(lo, hi);
         I32::new(self.l, v)
     }
@@ -95,7 +106,11 @@ macro_rules! op {
             type Output = Self;
             #[inline(always)]
             fn $method(self, o: Self) -> Self {
-                Self { lo: $trait::$method(self.lo, o.lo), hi: $trait::$method(self.hi, o.hi), l: self.l }
+                Self {
+                    lo: $trait::$method(self.lo, o.lo),
+                    hi: $trait::$method(self.hi, o.hi),
+                    l: self.l,
+                }
             }
         }
 
@@ -120,8 +135,12 @@ mod tests {
 
     #[test]
     fn rounding_to_integers_is_half_even_at_every_level() {
-        let x: [f32; LANES] = [0.5, 1.5, 2.5, -0.5, -1.5, 1e6, -1e6, 3e9, -3e9, 0.0, 7.49, 7.51, 1e-9, 2e9, 123.5, 124.5];
-        let expect: [i32; LANES] = core::array::from_fn(|i| f64::from(x[i]).clamp(-2e9, 2e9).round_ties_even() as i32);
+        let x: [f32; LANES] = [
+            0.5, 1.5, 2.5, -0.5, -1.5, 1e6, -1e6, 3e9, -3e9, 0.0, 7.49, 7.51, 1e-9, 2e9, 123.5,
+            124.5,
+        ];
+        let expect: [i32; LANES] =
+            core::array::from_fn(|i| f64::from(x[i]).clamp(-2e9, 2e9).round_ties_even() as i32);
         for level in SimdLevel::available() {
             let got = with_lanes!(level, l => F64::from_f32(F32::from_array(l, &x)).round_to_i32(2e9).to_array());
             assert_eq!(got, expect, "{level}");

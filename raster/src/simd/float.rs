@@ -22,13 +22,19 @@ impl<L: Lanes> F32<L> {
     /// The same value in every lane.
     #[inline(always)]
     pub fn splat(l: L, x: f32) -> Self {
-        Self { v: f32x16::splat(l.isa(), x), l }
+        Self {
+            v: f32x16::splat(l.isa(), x),
+            l,
+        }
     }
 
     /// Lane `i` is element `i`.
     #[inline(always)]
     pub fn from_array(l: L, a: &[f32; LANES]) -> Self {
-        Self { v: f32x16::from_slice(l.isa(), a), l }
+        Self {
+            v: f32x16::from_slice(l.isa(), a),
+            l,
+        }
     }
 
     /// Element `i` is lane `i`.
@@ -54,13 +60,19 @@ impl<L: Lanes> F32<L> {
     /// Absolute value; clears the sign bit, of NaN too.
     #[inline(always)]
     pub fn abs(self) -> Self {
-        Self { v: self.v.abs(), l: self.l }
+        Self {
+            v: self.v.abs(),
+            l: self.l,
+        }
     }
 
     /// Correctly rounded square root; NaN below zero.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
-        Self { v: self.l.round(self.v.sqrt()), l: self.l }
+        Self {
+            v: self.l.round(self.v.sqrt()),
+            l: self.l,
+        }
     }
 
     /// Correctly rounded 1/x.
@@ -72,19 +84,28 @@ impl<L: Lanes> F32<L> {
     /// Largest integer not above.
     #[inline(always)]
     pub fn floor(self) -> Self {
-        Self { v: self.v.floor(), l: self.l }
+        Self {
+            v: self.v.floor(),
+            l: self.l,
+        }
     }
 
     /// Smallest integer not below.
     #[inline(always)]
     pub fn ceil(self) -> Self {
-        Self { v: self.v.ceil(), l: self.l }
+        Self {
+            v: self.v.ceil(),
+            l: self.l,
+        }
     }
 
     /// Nearest integer, ties to even.
     #[inline(always)]
     pub fn round_ties_even(self) -> Self {
-        Self { v: self.v.round_ties_even(), l: self.l }
+        Self {
+            v: self.v.round_ties_even(),
+            l: self.l,
+        }
     }
 
     /// `if self < o { self } else { o }`: the second operand where one is NaN.
@@ -102,37 +123,53 @@ impl<L: Lanes> F32<L> {
     /// `self.max(lo).min(hi)`: NaN becomes `lo`.
     #[inline(always)]
     pub fn clamp(self, lo: f32, hi: f32) -> Self {
-        self.max(Self::splat(self.l, lo)).min(Self::splat(self.l, hi))
+        self.max(Self::splat(self.l, lo))
+            .min(Self::splat(self.l, hi))
     }
 
     /// `self < o`; false where one is NaN.
     #[inline(always)]
     pub fn lt(self, o: Self) -> Mask<L> {
-        Mask { v: self.v.simd_lt(o.v), l: self.l }
+        Mask {
+            v: self.v.simd_lt(o.v),
+            l: self.l,
+        }
     }
 
     /// `self <= o`; false where one is NaN.
     #[inline(always)]
     pub fn le(self, o: Self) -> Mask<L> {
-        Mask { v: self.v.simd_le(o.v), l: self.l }
+        Mask {
+            v: self.v.simd_le(o.v),
+            l: self.l,
+        }
     }
 
     /// `self > o`; false where one is NaN.
     #[inline(always)]
     pub fn gt(self, o: Self) -> Mask<L> {
-        Mask { v: self.v.simd_gt(o.v), l: self.l }
+        Mask {
+            v: self.v.simd_gt(o.v),
+            l: self.l,
+        }
     }
 
     /// `self >= o`; false where one is NaN.
     #[inline(always)]
     pub fn ge(self, o: Self) -> Mask<L> {
-        Mask { v: self.v.simd_ge(o.v), l: self.l }
+        Mask {
+            v: self.v.simd_ge(o.v),
+            l: self.l,
+        }
     }
 
     /// `self == o`; false where one is NaN.
     #[inline(always)]
     pub fn eq(self, o: Self) -> Mask<L> {
-        Mask { v: self.v.simd_eq(o.v), l: self.l }
+        Mask {
+            v: self.v.simd_eq(o.v),
+            l: self.l,
+        }
     }
 
     /// `self != o`; true where one is NaN.
@@ -156,7 +193,8 @@ impl<L: Lanes> F32<L> {
     /// Replaces every NaN by the canonical one, `0x7fc0_0000`.
     #[inline(always)]
     pub fn canonical_nan(self) -> Self {
-        self.eq(self).select_f32(self, Self::splat(self.l, f32::from_bits(0x7fc0_0000)))
+        self.eq(self)
+            .select_f32(self, Self::splat(self.l, f32::from_bits(0x7fc0_0000)))
     }
 
     /// Difference in x inside each 2×2 quad (fine derivative): right minus
@@ -172,7 +210,10 @@ impl<L: Lanes> F32<L> {
     /// upper row, of the lane's own column.
     #[inline(always)]
     pub fn quad_ddy(self) -> Self {
-        let below = permute(self, [8, 9, 10, 11, 12, 13, 14, 15, 8, 9, 10, 11, 12, 13, 14, 15]);
+        let below = permute(
+            self,
+            [8, 9, 10, 11, 12, 13, 14, 15, 8, 9, 10, 11, 12, 13, 14, 15],
+        );
         let above = permute(self, [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7]);
         below - above
     }
@@ -188,14 +229,20 @@ fn permute<L: Lanes>(x: F32<L>, order: [u8; LANES]) -> F32<L> {
         }
     }
     let idx = fearless_simd::u8x64::from_slice(x.l.isa(), &bytes);
-    F32 { v: x.l.isa().swizzle_dyn_precise_f32x16(x.v, idx), l: x.l }
+    F32 {
+        v: x.l.isa().swizzle_dyn_precise_f32x16(x.v, idx),
+        l: x.l,
+    }
 }
 
 impl<L: Lanes> Mask<L> {
     /// `if mask { yes } else { no }`, per lane.
     #[inline(always)]
     pub fn select_f32(self, yes: F32<L>, no: F32<L>) -> F32<L> {
-        F32 { v: self.l.isa().select_f32x16(self.v, yes.v, no.v), l: self.l }
+        F32 {
+            v: self.l.isa().select_f32x16(self.v, yes.v, no.v),
+            l: self.l,
+        }
     }
 }
 
@@ -204,7 +251,10 @@ impl<L: Lanes> F32<L> {
     /// 1.0 exactly where all operands lie in 0..=1 and none is −0 or NaN.
     #[inline(always)]
     pub(crate) fn all_in_unit(v: &[Self; 4]) -> Mask<L> {
-        let largest = v[0].to_bits().max(v[1].to_bits()).max(v[2].to_bits().max(v[3].to_bits()));
+        let largest = v[0]
+            .to_bits()
+            .max(v[1].to_bits())
+            .max(v[2].to_bits().max(v[3].to_bits()));
         largest.le(U32::splat(v[0].l, 1.0f32.to_bits()))
     }
 }
@@ -215,7 +265,10 @@ macro_rules! float_op {
             type Output = Self;
             #[inline(always)]
             fn $method(self, o: Self) -> Self {
-                Self { v: self.l.round($trait::$method(self.v, o.v)), l: self.l }
+                Self {
+                    v: self.l.round($trait::$method(self.v, o.v)),
+                    l: self.l,
+                }
             }
         }
 
@@ -237,6 +290,9 @@ impl<L: Lanes> Neg for F32<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { v: -self.v, l: self.l }
+        Self {
+            v: -self.v,
+            l: self.l,
+        }
     }
 }

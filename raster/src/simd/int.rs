@@ -152,8 +152,22 @@ macro_rules! int_lanes {
     };
 }
 
-int_lanes!(I32, i32x16, i32, select_i32, select_i32x16, "One `i32` a lane; `>>` keeps the sign.");
-int_lanes!(U32, u32x16, u32, select_u32, select_u32x16, "One `u32` a lane.");
+int_lanes!(
+    I32,
+    i32x16,
+    i32,
+    select_i32,
+    select_i32x16,
+    "One `i32` a lane; `>>` keeps the sign."
+);
+int_lanes!(
+    U32,
+    u32x16,
+    u32,
+    select_u32,
+    select_u32x16,
+    "One `u32` a lane."
+);
 
 impl<L: Lanes> I32<L> {
     /// Nearest float, ties to even.

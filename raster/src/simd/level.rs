@@ -34,7 +34,9 @@ impl SimdLevel {
         // SSE4.2 alone gains too little over SSE2 to be compiled as a level of its own.
         #[cfg(target_arch = "x86_64")]
         if let (Level::Sse4_2(_), Some(sse2)) = (level, level.as_sse2()) {
-            return Self { level: Level::Sse2(sse2) };
+            return Self {
+                level: Level::Sse2(sse2),
+            };
         }
         Self { level }
     }
@@ -42,7 +44,9 @@ impl SimdLevel {
     /// One lane at a time, on any machine.
     #[must_use]
     pub fn scalar() -> Self {
-        Self { level: Level::fallback() }
+        Self {
+            level: Level::fallback(),
+        }
     }
 
     /// Every level that this machine has, narrowest first.
@@ -52,12 +56,20 @@ impl SimdLevel {
         let mut levels = vec![Self::scalar()];
         #[cfg(target_arch = "x86_64")]
         {
-            levels.extend(best.as_sse2().map(|t| Self { level: Level::Sse2(t) }));
-            levels.extend(best.as_avx2().map(|t| Self { level: Level::Avx2(t) }));
-            levels.extend(best.as_avx512().map(|t| Self { level: Level::Avx512(t) }));
+            levels.extend(best.as_sse2().map(|t| Self {
+                level: Level::Sse2(t),
+            }));
+            levels.extend(best.as_avx2().map(|t| Self {
+                level: Level::Avx2(t),
+            }));
+            levels.extend(best.as_avx512().map(|t| Self {
+                level: Level::Avx512(t),
+            }));
         }
         #[cfg(target_arch = "aarch64")]
-        levels.extend(best.as_neon().map(|t| Self { level: Level::Neon(t) }));
+        levels.extend(best.as_neon().map(|t| Self {
+            level: Level::Neon(t),
+        }));
         let _ = best;
         levels
     }
@@ -154,10 +166,14 @@ impl FromStr for SimdLevel {
             return Ok(Self::detect());
         }
         let available = Self::available();
-        available.iter().copied().find(|l| l.name() == s).ok_or_else(|| UnknownSimdLevel {
-            given: s.to_owned(),
-            available: available.iter().map(|l| l.name()).collect(),
-        })
+        available
+            .iter()
+            .copied()
+            .find(|l| l.name() == s)
+            .ok_or_else(|| UnknownSimdLevel {
+                given: s.to_owned(),
+                available: available.iter().map(|l| l.name()).collect(),
+            })
     }
 }
 
@@ -171,7 +187,10 @@ mod tests {
             assert_eq!(l.name().parse::<SimdLevel>().unwrap(), l);
         }
         let e = "mmx".parse::<SimdLevel>().unwrap_err();
-        assert!(e.to_string().contains("mmx") && e.to_string().contains("scalar"), "{e}");
+        assert!(
+            e.to_string().contains("mmx") && e.to_string().contains("scalar"),
+            "{e}"
+        );
     }
 
     #[test]

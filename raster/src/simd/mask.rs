@@ -17,13 +17,19 @@ impl<L: Lanes> Mask<L> {
     /// All lanes true, or all false.
     #[inline(always)]
     pub fn splat(l: L, b: bool) -> Self {
-        Self { v: mask32x16::splat(l.isa(), b), l }
+        Self {
+            v: mask32x16::splat(l.isa(), b),
+            l,
+        }
     }
 
     /// Lane `i` is bit `i`.
     #[inline(always)]
     pub fn from_bits(l: L, bits: u16) -> Self {
-        Self { v: mask32x16::from_bitmask(l.isa(), u64::from(bits)), l }
+        Self {
+            v: mask32x16::from_bitmask(l.isa(), u64::from(bits)),
+            l,
+        }
     }
 
     /// Bit `i` is lane `i`.
@@ -49,7 +55,10 @@ impl<L: Lanes> BitAnd for Mask<L> {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, o: Self) -> Self {
-        Self { v: self.v & o.v, l: self.l }
+        Self {
+            v: self.v & o.v,
+            l: self.l,
+        }
     }
 }
 
@@ -57,7 +66,10 @@ impl<L: Lanes> BitOr for Mask<L> {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, o: Self) -> Self {
-        Self { v: self.v | o.v, l: self.l }
+        Self {
+            v: self.v | o.v,
+            l: self.l,
+        }
     }
 }
 
@@ -65,7 +77,10 @@ impl<L: Lanes> BitXor for Mask<L> {
     type Output = Self;
     #[inline(always)]
     fn bitxor(self, o: Self) -> Self {
-        Self { v: self.v ^ o.v, l: self.l }
+        Self {
+            v: self.v ^ o.v,
+            l: self.l,
+        }
     }
 }
 
@@ -73,6 +88,9 @@ impl<L: Lanes> Not for Mask<L> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self { v: !self.v, l: self.l }
+        Self {
+            v: !self.v,
+            l: self.l,
+        }
     }
 }

@@ -21,8 +21,8 @@ mod mask;
 pub(crate) use double::{F64, round_to_i32};
 pub use float::F32;
 pub use int::{I32, U32};
-pub use level::{SimdLevel, UnknownSimdLevel};
 pub(crate) use level::with_lanes;
+pub use level::{SimdLevel, UnknownSimdLevel};
 pub use mask::Mask;
 
 use fearless_simd::Simd;

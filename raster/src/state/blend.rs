@@ -55,7 +55,11 @@ impl BlendFactor {
     pub fn reads_dst(self) -> bool {
         matches!(
             self,
-            Self::Dst | Self::OneMinusDst | Self::DstAlpha | Self::OneMinusDstAlpha | Self::SrcAlphaSaturated
+            Self::Dst
+                | Self::OneMinusDst
+                | Self::DstAlpha
+                | Self::OneMinusDstAlpha
+                | Self::SrcAlphaSaturated
         )
     }
 }
@@ -77,7 +81,13 @@ pub enum BlendOperation {
 
 impl BlendOperation {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Add, Self::Subtract, Self::ReverseSubtract, Self::Min, Self::Max];
+    pub const ALL: [Self; 5] = [
+        Self::Add,
+        Self::Subtract,
+        Self::ReverseSubtract,
+        Self::Min,
+        Self::Max,
+    ];
 }
 
 /// Blending of the colour channels, or of alpha.
@@ -93,12 +103,18 @@ pub struct BlendComponent {
 
 impl BlendComponent {
     /// The source replaces the destination.
-    pub const REPLACE: Self =
-        Self { src_factor: BlendFactor::One, dst_factor: BlendFactor::Zero, operation: BlendOperation::Add };
+    pub const REPLACE: Self = Self {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::Zero,
+        operation: BlendOperation::Add,
+    };
 
     /// Plain sum.
-    pub const ADD: Self =
-        Self { src_factor: BlendFactor::One, dst_factor: BlendFactor::One, operation: BlendOperation::Add };
+    pub const ADD: Self = Self {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    };
 }
 
 /// Blending of one colour attachment.
@@ -112,17 +128,26 @@ pub struct BlendState {
 
 impl BlendState {
     /// dst + src, saturating.
-    pub const ADDITIVE: Self = Self { color: BlendComponent::ADD, alpha: BlendComponent::ADD };
+    pub const ADDITIVE: Self = Self {
+        color: BlendComponent::ADD,
+        alpha: BlendComponent::ADD,
+    };
 
     /// dst − src, saturating.
     pub const SUBTRACTIVE: Self = {
-        let c = BlendComponent { operation: BlendOperation::ReverseSubtract, ..BlendComponent::ADD };
+        let c = BlendComponent {
+            operation: BlendOperation::ReverseSubtract,
+            ..BlendComponent::ADD
+        };
         Self { color: c, alpha: c }
     };
 
     /// min(dst, src).
     pub const MIN: Self = {
-        let c = BlendComponent { operation: BlendOperation::Min, ..BlendComponent::ADD };
+        let c = BlendComponent {
+            operation: BlendOperation::Min,
+            ..BlendComponent::ADD
+        };
         Self { color: c, alpha: c }
     };
 
@@ -169,11 +194,20 @@ pub struct ColorTargetState {
 
 impl ColorTargetState {
     /// Writes every channel without blending.
-    pub const OPAQUE: Self = Self { blend: None, write_mask: ColorWrites::ALL };
+    pub const OPAQUE: Self = Self {
+        blend: None,
+        write_mask: ColorWrites::ALL,
+    };
     /// Adds to every channel.
-    pub const ADDITIVE: Self = Self { blend: Some(BlendState::ADDITIVE), write_mask: ColorWrites::ALL };
+    pub const ADDITIVE: Self = Self {
+        blend: Some(BlendState::ADDITIVE),
+        write_mask: ColorWrites::ALL,
+    };
     /// Writes nothing.
-    pub const NONE: Self = Self { blend: None, write_mask: ColorWrites::NONE };
+    pub const NONE: Self = Self {
+        blend: None,
+        write_mask: ColorWrites::NONE,
+    };
 }
 
 impl Default for ColorTargetState {

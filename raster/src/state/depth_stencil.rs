@@ -139,7 +139,9 @@ impl StencilFaceState {
     #[must_use]
     pub fn writes(&self) -> bool {
         self.write_mask != 0
-            && [self.fail_op, self.depth_fail_op, self.pass_op].iter().any(|&o| o != StencilOperation::Keep)
+            && [self.fail_op, self.depth_fail_op, self.pass_op]
+                .iter()
+                .any(|&o| o != StencilOperation::Keep)
     }
 }
 
@@ -193,10 +195,18 @@ pub struct DepthState {
 
 impl DepthState {
     /// Always passes, writes nothing.
-    pub const DISABLED: Self = Self { compare: CompareFunction::Always, write: false, bounds: None };
+    pub const DISABLED: Self = Self {
+        compare: CompareFunction::Always,
+        write: false,
+        bounds: None,
+    };
 
     /// The ordinary opaque test, `Less` with writes.
-    pub const LESS_WRITE: Self = Self { compare: CompareFunction::Less, write: true, bounds: None };
+    pub const LESS_WRITE: Self = Self {
+        compare: CompareFunction::Less,
+        write: true,
+        bounds: None,
+    };
 }
 
 impl Default for DepthState {
@@ -220,17 +230,30 @@ impl DepthStencilState {
     /// Opaque geometry: depth `Less`, written; no stencil.
     #[must_use]
     pub fn opaque() -> Self {
-        Self { depth: DepthState::LESS_WRITE, ..Self::default() }
+        Self {
+            depth: DepthState::LESS_WRITE,
+            ..Self::default()
+        }
     }
 
     /// A second pass over geometry that is already in the depth buffer, where
     /// the stencil equals the reference: the lit pass of shadow volumes.
     #[must_use]
     pub fn equal_where_stencil_matches() -> Self {
-        let face = StencilFaceState { compare: CompareFunction::Equal, ..StencilFaceState::IGNORE };
+        let face = StencilFaceState {
+            compare: CompareFunction::Equal,
+            ..StencilFaceState::IGNORE
+        };
         Self {
-            depth: DepthState { compare: CompareFunction::Equal, write: false, bounds: None },
-            stencil: StencilState { front: face, back: face },
+            depth: DepthState {
+                compare: CompareFunction::Equal,
+                write: false,
+                bounds: None,
+            },
+            stencil: StencilState {
+                front: face,
+                back: face,
+            },
             ..Self::default()
         }
     }
@@ -239,9 +262,16 @@ impl DepthStencilState {
     /// back faces −1 (Heidmann; IMPLEMENTING §1.1).
     #[must_use]
     pub fn z_pass_volumes() -> Self {
-        let face = |op| StencilFaceState { pass_op: op, ..StencilFaceState::IGNORE };
+        let face = |op| StencilFaceState {
+            pass_op: op,
+            ..StencilFaceState::IGNORE
+        };
         Self {
-            depth: DepthState { compare: CompareFunction::Less, write: false, bounds: None },
+            depth: DepthState {
+                compare: CompareFunction::Less,
+                write: false,
+                bounds: None,
+            },
             stencil: StencilState {
                 front: face(StencilOperation::IncrementWrap),
                 back: face(StencilOperation::DecrementWrap),
@@ -254,9 +284,16 @@ impl DepthStencilState {
     /// front faces −1 ("z-fail", Carmack's reverse; IMPLEMENTING §1.1).
     #[must_use]
     pub fn z_fail_volumes() -> Self {
-        let face = |op| StencilFaceState { depth_fail_op: op, ..StencilFaceState::IGNORE };
+        let face = |op| StencilFaceState {
+            depth_fail_op: op,
+            ..StencilFaceState::IGNORE
+        };
         Self {
-            depth: DepthState { compare: CompareFunction::Less, write: false, bounds: None },
+            depth: DepthState {
+                compare: CompareFunction::Less,
+                write: false,
+                bounds: None,
+            },
             stencil: StencilState {
                 front: face(StencilOperation::DecrementWrap),
                 back: face(StencilOperation::IncrementWrap),

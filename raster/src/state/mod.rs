@@ -7,8 +7,13 @@ mod blend;
 mod depth_stencil;
 mod primitive;
 
-pub use blend::{BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites};
-pub use depth_stencil::{
-    CompareFunction, DepthBias, DepthState, DepthStencilState, StencilFaceState, StencilOperation, StencilState,
+pub use blend::{
+    BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
 };
-pub use primitive::{CullMode, FrontFace, PrimitiveState, PrimitiveTopology, ScissorRect, Viewport};
+pub use depth_stencil::{
+    CompareFunction, DepthBias, DepthState, DepthStencilState, StencilFaceState, StencilOperation,
+    StencilState,
+};
+pub use primitive::{
+    CullMode, FrontFace, PrimitiveState, PrimitiveTopology, ScissorRect, Viewport,
+};

@@ -102,7 +102,14 @@ impl Viewport {
     /// All of a `width`×`height` target, depth 0..1.
     #[must_use]
     pub fn full(width: u32, height: u32) -> Self {
-        Self { x: 0.0, y: 0.0, width: width as f32, height: height as f32, min_depth: 0.0, max_depth: 1.0 }
+        Self {
+            x: 0.0,
+            y: 0.0,
+            width: width as f32,
+            height: height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        }
     }
 }
 

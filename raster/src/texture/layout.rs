@@ -30,7 +30,13 @@ impl Layout {
         let blocks = width.max(height).div_ceil(BLOCK).max(1);
         let order = blocks.next_power_of_two().trailing_zeros().min(MAX_ORDER);
         let side = BLOCK << order;
-        Self { width, height, order, across: width.div_ceil(side).max(1), down: height.div_ceil(side).max(1) }
+        Self {
+            width,
+            height,
+            order,
+            across: width.div_ceil(side).max(1),
+            down: height.div_ceil(side).max(1),
+        }
     }
 
     /// Number of blocks that are stored, padding included.
@@ -49,7 +55,10 @@ impl Layout {
     /// Index of the block and of the pixel inside it.
     #[inline(always)]
     pub(crate) fn locate(&self, x: u32, y: u32) -> (usize, usize) {
-        (self.block_index(x / BLOCK, y / BLOCK), ((y % BLOCK) * BLOCK + x % BLOCK) as usize)
+        (
+            self.block_index(x / BLOCK, y / BLOCK),
+            ((y % BLOCK) * BLOCK + x % BLOCK) as usize,
+        )
     }
 
     /// Execution tiles of at most `side` pixels, in storage order: each is a run
@@ -69,7 +78,10 @@ impl Layout {
         let superblock = (index >> (2 * self.order)) as u32;
         let (bx, by) = unmorton(index & ((1 << (2 * self.order)) - 1));
         let side = 1 << self.order;
-        (((superblock % self.across) * side + bx) * BLOCK, ((superblock / self.across) * side + by) * BLOCK)
+        (
+            ((superblock % self.across) * side + bx) * BLOCK,
+            ((superblock / self.across) * side + by) * BLOCK,
+        )
     }
 }
 

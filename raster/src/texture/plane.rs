@@ -65,7 +65,10 @@ impl Plane {
             Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => Self::Depth(DepthPlane {
                 depth: vec![Block([0; 64]); n],
                 stencil: vec![Block([0; 64]); n],
-                hiz: HizPlane { min: vec![0; n], max: vec![0; n] },
+                hiz: HizPlane {
+                    min: vec![0; n],
+                    max: vec![0; n],
+                },
             }),
             Format::R8Unorm => Self::Color(ColorBlocks::B8(vec![Block([0; 64]); n])),
             Format::Rg8Unorm | Format::R16Sint | Format::R16Float => {
@@ -102,9 +105,13 @@ impl ColorBlocks {
     pub(crate) fn set(&mut self, format: Format, (b, i): (usize, usize), t: [u32; 4]) {
         match self {
             Self::B8(v) => v[b].0[i] = t[0] as u8,
-            Self::B16(v) if format == Format::Rg8Unorm => v[b].0[i] = (t[0] & 255 | t[1] << 8) as u16,
+            Self::B16(v) if format == Format::Rg8Unorm => {
+                v[b].0[i] = (t[0] & 255 | t[1] << 8) as u16
+            }
             Self::B16(v) => v[b].0[i] = t[0] as u16,
-            Self::B32(v) if format == Format::Rgba8Unorm => v[b].0[i] = u32::from_le_bytes(t.map(|c| c as u8)),
+            Self::B32(v) if format == Format::Rgba8Unorm => {
+                v[b].0[i] = u32::from_le_bytes(t.map(|c| c as u8))
+            }
             Self::B32(v) => v[b].0[i] = t[0],
             Self::B16x4(v) => (0..4).for_each(|c| v[b].0[c][i] = t[c] as u16),
             Self::B32x4(v) => (0..4).for_each(|c| v[b].0[c][i] = t[c]),

@@ -83,11 +83,23 @@ impl Texture {
         for mip in 0..desc.mip_levels {
             let [w, h, d] = mip_size(desc, mip);
             let layout = Layout::new(w, h);
-            let layers = if desc.dimension == TextureDimension::Cube { 6 } else { d };
+            let layers = if desc.dimension == TextureDimension::Cube {
+                6
+            } else {
+                d
+            };
             layouts.push(layout);
-            planes.push((0..layers).map(|_| Plane::new(desc.format, &layout)).collect());
+            planes.push(
+                (0..layers)
+                    .map(|_| Plane::new(desc.format, &layout))
+                    .collect(),
+            );
         }
-        Ok(Self { desc: desc.clone(), layouts, planes })
+        Ok(Self {
+            desc: desc.clone(),
+            layouts,
+            planes,
+        })
     }
 
     /// What it was created from.
@@ -103,8 +115,18 @@ impl Texture {
     }
 
     pub(crate) fn check_subresource(&self, s: Subresource) -> Result<(), Error> {
-        let ok = self.planes.get(s.mip as usize).is_some_and(|l| (s.layer as usize) < l.len());
-        if ok { Ok(()) } else { Err(Error::NoSuchSubresource { texture: self.desc.label.clone(), subresource: s }) }
+        let ok = self
+            .planes
+            .get(s.mip as usize)
+            .is_some_and(|l| (s.layer as usize) < l.len());
+        if ok {
+            Ok(())
+        } else {
+            Err(Error::NoSuchSubresource {
+                texture: self.desc.label.clone(),
+                subresource: s,
+            })
+        }
     }
 
     pub(crate) fn color(&self, s: Subresource) -> Result<&ColorBlocks, Error> {
@@ -124,7 +146,11 @@ impl Texture {
     }
 
     fn wrong_aspect(&self, wanted: &'static str) -> Error {
-        Error::WrongAspect { texture: self.desc.label.clone(), format: self.desc.format, wanted }
+        Error::WrongAspect {
+            texture: self.desc.label.clone(),
+            format: self.desc.format,
+            wanted,
+        }
     }
 
     /// Raw channel bits of every texel of a colour image, row by row from the
@@ -135,7 +161,9 @@ impl Texture {
     pub fn read_raw(&self, s: Subresource) -> Result<Vec<[u32; 4]>, Error> {
         let blocks = self.color(s)?;
         let l = &self.layouts[s.mip as usize];
-        Ok(pixels(l).map(|(x, y)| blocks.get(self.desc.format, l.locate(x, y))).collect())
+        Ok(pixels(l)
+            .map(|(x, y)| blocks.get(self.desc.format, l.locate(x, y)))
+            .collect())
     }
 
     /// Decoded texels, row by row from the top. Integers become floats.
@@ -143,7 +171,11 @@ impl Texture {
     /// # Errors
     /// Where the subresource does not exist or is not colour.
     pub fn read_color(&self, s: Subresource) -> Result<Vec<ColorTexel>, Error> {
-        Ok(self.read_raw(s)?.into_iter().map(|t| decode(self.desc.format, t)).collect())
+        Ok(self
+            .read_raw(s)?
+            .into_iter()
+            .map(|t| decode(self.desc.format, t))
+            .collect())
     }
 
     /// Depth of every pixel in 0..=1, row by row from the top.
@@ -152,7 +184,13 @@ impl Texture {
     /// Where the subresource does not exist or has no depth.
     pub fn read_depth(&self, s: Subresource) -> Result<Vec<f32>, Error> {
         let float = self.desc.format == Format::Depth32FloatStencil8;
-        let to_f32 = |b: u32| if float { f32::from_bits(b) } else { format::f32_from_d24(b) };
+        let to_f32 = |b: u32| {
+            if float {
+                f32::from_bits(b)
+            } else {
+                format::f32_from_d24(b)
+            }
+        };
         Ok(self.read_depth_bits(s)?.into_iter().map(to_f32).collect())
     }
 
@@ -205,14 +243,25 @@ impl Texture {
         self.write_with(s, texels.len(), |i| texels[i])
     }
 
-    fn write_with(&mut self, s: Subresource, len: usize, texel: impl Fn(usize) -> [u32; 4]) -> Result<(), Error> {
+    fn write_with(
+        &mut self,
+        s: Subresource,
+        len: usize,
+        texel: impl Fn(usize) -> [u32; 4],
+    ) -> Result<(), Error> {
         self.color(s)?;
         let l = self.layouts[s.mip as usize];
         let expected = l.width as usize * l.height as usize;
         if len != expected {
-            return Err(Error::TexelCount { texture: self.desc.label.clone(), given: len, expected });
+            return Err(Error::TexelCount {
+                texture: self.desc.label.clone(),
+                given: len,
+                expected,
+            });
         }
-        let Plane::Color(blocks) = &mut self.planes[s.mip as usize][s.layer as usize] else { unreachable!("checked") };
+        let Plane::Color(blocks) = &mut self.planes[s.mip as usize][s.layer as usize] else {
+            unreachable!("checked")
+        };
         for (i, (x, y)) in pixels(&l).enumerate() {
             blocks.set(self.desc.format, l.locate(x, y), texel(i));
         }
@@ -223,17 +272,28 @@ impl Texture {
     ///
     /// # Errors
     /// Where the subresource does not exist or has no depth, or a length is wrong.
-    pub fn write_depth_stencil(&mut self, s: Subresource, depth: &[f32], stencil: &[u8]) -> Result<(), Error> {
+    pub fn write_depth_stencil(
+        &mut self,
+        s: Subresource,
+        depth: &[f32],
+        stencil: &[u8],
+    ) -> Result<(), Error> {
         self.depth(s)?;
         let l = self.layouts[s.mip as usize];
         let expected = l.width as usize * l.height as usize;
         for given in [depth.len(), stencil.len()] {
             if given != expected {
-                return Err(Error::TexelCount { texture: self.desc.label.clone(), given, expected });
+                return Err(Error::TexelCount {
+                    texture: self.desc.label.clone(),
+                    given,
+                    expected,
+                });
             }
         }
         let f = self.desc.format;
-        let Plane::Depth(plane) = &mut self.planes[s.mip as usize][s.layer as usize] else { unreachable!("checked") };
+        let Plane::Depth(plane) = &mut self.planes[s.mip as usize][s.layer as usize] else {
+            unreachable!("checked")
+        };
         for (i, (x, y)) in pixels(&l).enumerate() {
             let (b, k) = l.locate(x, y);
             plane.depth[b].0[k] = encode_depth(f, depth[i]);
@@ -257,9 +317,12 @@ pub(crate) fn encode_depth(f: Format, v: f32) -> u32 {
 pub(crate) fn encode(f: Format, v: [f32; 4]) -> [u32; 4] {
     match f {
         Format::R8Unorm => [u32::from(format::unorm8_from_f32(v[0])), 0, 0, 0],
-        Format::Rg8Unorm => {
-            [u32::from(format::unorm8_from_f32(v[0])), u32::from(format::unorm8_from_f32(v[1])), 0, 0]
-        }
+        Format::Rg8Unorm => [
+            u32::from(format::unorm8_from_f32(v[0])),
+            u32::from(format::unorm8_from_f32(v[1])),
+            0,
+            0,
+        ],
         Format::Rgba8Unorm => v.map(|c| u32::from(format::unorm8_from_f32(c))),
         Format::R16Sint => [u32::from(format::i16_from_f32(v[0]) as u16), 0, 0, 0],
         Format::R16Float => [u32::from(format::f16_from_f32(v[0])), 0, 0, 0],
@@ -300,23 +363,42 @@ fn mip_size(desc: &TextureDescriptor, mip: u32) -> [u32; 3] {
 
 fn validate(desc: &TextureDescriptor) -> Result<(), Error> {
     let [w, h, d] = desc.size;
-    let bad = |reason: String| Err(Error::InvalidTexture { texture: desc.label.clone(), size: desc.size, reason });
+    let bad = |reason: String| {
+        Err(Error::InvalidTexture {
+            texture: desc.label.clone(),
+            size: desc.size,
+            reason,
+        })
+    };
     if w == 0 || h == 0 || d == 0 {
         return bad("every size must be at least 1".into());
     }
     if w.max(h).max(d) > MAX_TEXTURE_SIZE {
         return bad(format!("the limit is {MAX_TEXTURE_SIZE}"));
     }
-    let largest = if desc.dimension == TextureDimension::D3 { w.max(h).max(d) } else { w.max(h) };
+    let largest = if desc.dimension == TextureDimension::D3 {
+        w.max(h).max(d)
+    } else {
+        w.max(h)
+    };
     let levels = 32 - largest.leading_zeros();
     if desc.mip_levels == 0 || desc.mip_levels > levels {
-        return bad(format!("{} mip levels asked for, valid is 1..={levels}", desc.mip_levels));
+        return bad(format!(
+            "{} mip levels asked for, valid is 1..={levels}",
+            desc.mip_levels
+        ));
     }
     match desc.dimension {
-        TextureDimension::D1 if h != 1 || d != 1 => bad("a 1D texture has height and depth 1".into()),
+        TextureDimension::D1 if h != 1 || d != 1 => {
+            bad("a 1D texture has height and depth 1".into())
+        }
         TextureDimension::D2 if d != 1 => bad("a 2D texture has depth 1".into()),
-        TextureDimension::Cube if w != h || d != 1 => bad("a cube map has square faces and depth 1".into()),
-        TextureDimension::D3 if desc.format.is_depth_stencil() => bad("a 3D texture cannot be depth-stencil".into()),
+        TextureDimension::Cube if w != h || d != 1 => {
+            bad("a cube map has square faces and depth 1".into())
+        }
+        TextureDimension::D3 if desc.format.is_depth_stencil() => {
+            bad("a 3D texture cannot be depth-stencil".into())
+        }
         _ => Ok(()),
     }
 }

@@ -72,8 +72,15 @@ pub(super) fn ask_group<L: Lanes, const D24: bool>(
 
 #[inline(always)]
 fn load_group<L: Lanes>(l: L, env: &Env<'_, '_>, first: usize) -> [I32<L>; 2] {
-    let d = env.target.depth.as_ref().expect("zmin/zmax only with depth");
-    match (d.hiz_min.get(first..first + LANES), d.hiz_max.get(first..first + LANES)) {
+    let d = env
+        .target
+        .depth
+        .as_ref()
+        .expect("zmin/zmax only with depth");
+    match (
+        d.hiz_min.get(first..first + LANES),
+        d.hiz_max.get(first..first + LANES),
+    ) {
         (Some(min), Some(max)) => [
             I32::from_array(l, min.try_into().expect("16 entries")),
             I32::from_array(l, max.try_into().expect("16 entries")),
@@ -99,7 +106,11 @@ fn refresh<L: Lanes>(l: L, env: &mut Env<'_, '_>, first: usize, stale: u16) {
         left &= left - 1;
         let (bx, by) = crate::texture::layout::unmorton(index);
         let inside = env.target.inside(x + 8 * bx, y + 8 * by);
-        let d = env.target.depth.as_mut().expect("zmin/zmax only with depth");
+        let d = env
+            .target
+            .depth
+            .as_mut()
+            .expect("zmin/zmax only with depth");
         [d.hiz_min[index], d.hiz_max[index]] = depth::block_range(l, &d.depth[index], inside);
     }
 }
@@ -133,7 +144,9 @@ pub(super) fn run_group<L: Lanes>(
     if config.shader.is_some() || config.depth_write || !config.attached {
         return done;
     }
-    let Some([on_fail, on_pass]) = face.counts else { return done };
+    let Some([on_fail, on_pass]) = face.counts else {
+        return done;
+    };
     let (pass, fail) = match config.compare {
         CompareFunction::Always => (full, 0),
         CompareFunction::Never => (0, full),
@@ -147,7 +160,11 @@ pub(super) fn run_group<L: Lanes>(
         if COUNT {
             let n = u64::from(blocks.count_ones());
             c.fragments.generated += 64 * n;
-            *(if failed { &mut c.fragments.depth_failed } else { &mut c.fragments.written }) += 64 * n;
+            *(if failed {
+                &mut c.fragments.depth_failed
+            } else {
+                &mut c.fragments.written
+            }) += 64 * n;
             if config.hiz {
                 c.tiles.tested += n;
                 c.tiles.accepted += n;
@@ -199,7 +216,11 @@ fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
     covered: u64,
 ) {
     let config = env.config;
-    let face = if t.front { &config.stencil[0] } else { &config.stencil[1] };
+    let face = if t.front {
+        &config.stencil[0]
+    } else {
+        &config.stencil[1]
+    };
     if !R::ON && config.plain && !t.far && config.shader.is_none() && config.attached {
         return outlined(
             l,
@@ -225,12 +246,7 @@ fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
 
 /// Pixels on the right side of clip planes and of the far end.
 #[inline(always)]
-fn visible<L: Lanes, const D24: bool>(
-    l: L,
-    env: &Env<'_, '_>,
-    t: &Triangle,
-    place: Place,
-) -> u64 {
+fn visible<L: Lanes, const D24: bool>(l: L, env: &Env<'_, '_>, t: &Triangle, place: Place) -> u64 {
     let c = env.config;
     let near = if t.far {
         DepthBlock::<D24>::not_beyond_far(l, t, place.x, place.y, c.depth_range, c.depth_reversed)
@@ -252,14 +268,24 @@ fn count_or_write<L: Lanes, const D24: bool>(
     decision: Option<Decision>,
     mask: u64,
 ) {
-    let config = env.config;
     count(&mut env.counters.fragments.generated, mask);
-    let Some(decision) = consult(l, env, face, place, plane, decision, mask) else { return };
+    let Some(decision) = consult(l, env, face, place, plane, decision, mask) else {
+        return;
+    };
     let passed = match face.counts {
         Some(steps) => counting_tests(l, env, place, plane, decision, steps, mask),
         None => {
             let depths = Depths::Plane(*plane);
-            tests::<L, D24>(l, env, place, face, &depths, decision, mask, &mut BlockAccess::default())
+            tests::<L, D24>(
+                l,
+                env,
+                place,
+                face,
+                &depths,
+                decision,
+                mask,
+                &mut BlockAccess::default(),
+            )
         }
     };
     count(&mut env.counters.fragments.written, passed);
@@ -299,7 +325,16 @@ fn counting_tests<L: Lanes, const D24: bool>(
     if config.depth_write && passed != 0 {
         let inside = env.target.inside(place.x, place.y);
         let d = env.target.depth.as_mut().expect("attached");
-        write_depth(l, config, env.counters, d, place.index, &Depths::Plane(*plane), inside, passed);
+        write_depth(
+            l,
+            config,
+            env.counters,
+            d,
+            place.index,
+            &Depths::Plane(*plane),
+            inside,
+            passed,
+        );
     }
     passed
 }
@@ -354,9 +389,15 @@ fn fragments<L: Lanes, const D24: bool>(
     observed: bool,
 ) -> BlockAccess {
     let config = env.config;
-    let mut access = BlockAccess { covered: mask, hiz_read: config.hiz, ..BlockAccess::default() };
+    let mut access = BlockAccess {
+        covered: mask,
+        hiz_read: config.hiz,
+        ..BlockAccess::default()
+    };
     count(&mut env.counters.fragments.generated, mask);
-    let Some(decision) = consult(l, env, face, place, &plane, decision, mask) else { return access };
+    let Some(decision) = consult(l, env, face, place, &plane, decision, mask) else {
+        return access;
+    };
     let late = config.is_late(face);
     let mut alive = mask;
     let mut depths = Depths::Plane(plane);
@@ -417,7 +458,11 @@ fn ask_hiz<L: Lanes, const D24: bool>(
     plane: &DepthBlock<D24>,
 ) -> Decision {
     let inside = env.target.inside(place.x, place.y);
-    let d = env.target.depth.as_mut().expect("zmin/zmax only with depth");
+    let d = env
+        .target
+        .depth
+        .as_mut()
+        .expect("zmin/zmax only with depth");
     let (min, max) = (&mut d.hiz_min[place.index], &mut d.hiz_max[place.index]);
     if *min > *max {
         [*min, *max] = outlined(
@@ -431,7 +476,10 @@ fn ask_hiz<L: Lanes, const D24: bool>(
 
 /// Bounds, stencil and depth tests with their writes; gives what passes all.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "the inputs of one pipeline stage")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the inputs of one pipeline stage"
+)]
 fn tests<L: Lanes, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
@@ -456,7 +504,11 @@ fn tests<L: Lanes, const D24: bool>(
         alive = ok;
     }
     let stencil_block = &mut d.stencil[place.index];
-    let stencil_pass = if face.enabled { stencil::test(l, face, stencil_block, alive) } else { alive };
+    let stencil_pass = if face.enabled {
+        stencil::test(l, face, stencil_block, alive)
+    } else {
+        alive
+    };
     count(&mut c.fragments.stencil_failed, alive & !stencil_pass);
 
     let depth_pass = match (config.compare, decision) {
@@ -472,7 +524,11 @@ fn tests<L: Lanes, const D24: bool>(
     };
     count(&mut c.fragments.depth_failed, stencil_pass & !depth_pass);
     if face.enabled {
-        let outcomes = [alive & !stencil_pass, stencil_pass & !depth_pass, depth_pass];
+        let outcomes = [
+            alive & !stencil_pass,
+            stencil_pass & !depth_pass,
+            depth_pass,
+        ];
         update_stencil(l, face, c, stencil_block, alive, outcomes, access);
     }
     if config.depth_write && depth_pass != 0 {
@@ -485,7 +541,10 @@ fn tests<L: Lanes, const D24: bool>(
 
 /// Writes depth where `mask` is set, and keeps zmin/zmax or marks them stale.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "the inputs of one pipeline stage")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the inputs of one pipeline stage"
+)]
 fn write_depth<L: Lanes, const D24: bool>(
     l: L,
     config: &DrawConfig<'_>,
@@ -592,7 +651,10 @@ fn write_block<L: Lanes, const D24: bool>(
     stored: &mut Block<u32>,
     mask: u64,
 ) -> u64 {
-    let differs = matches!(f, CompareFunction::Less | CompareFunction::Greater | CompareFunction::NotEqual);
+    let differs = matches!(
+        f,
+        CompareFunction::Less | CompareFunction::Greater | CompareFunction::NotEqual
+    );
     packets(
         #[inline(always)]
         |k| {
@@ -601,7 +663,11 @@ fn write_block<L: Lanes, const D24: bool>(
                 return 0;
             }
             let z = fragment_depth(l, depths, k);
-            let same = if differs || !COUNT { 0 } else { z.eq(depth::load(l, stored, k)).bits() & m };
+            let same = if differs || !COUNT {
+                0
+            } else {
+                z.eq(depth::load(l, stored, k)).bits() & m
+            };
             depth::store(l, stored, k, z, m);
             same
         },
@@ -622,7 +688,11 @@ fn update_stencil<L: Lanes>(
 ) {
     let tested = face.state.compare.reads_stored();
     let mut read = if tested { reached } else { 0 };
-    let ops = [face.state.fail_op, face.state.depth_fail_op, face.state.pass_op];
+    let ops = [
+        face.state.fail_op,
+        face.state.depth_fail_op,
+        face.state.pass_op,
+    ];
     for k in 0..3 {
         if face.effective[k] && outcomes[k] != 0 {
             if !tested && (ops[k].reads_stored() || face.state.write_mask != 0xff) {
@@ -643,7 +713,13 @@ fn update_stencil<L: Lanes>(
 }
 
 #[inline(always)]
-fn record<R: Recorder>(env: &Env<'_, '_>, recorder: &mut R, t: &Triangle, place: Place, access: BlockAccess) {
+fn record<R: Recorder>(
+    env: &Env<'_, '_>,
+    recorder: &mut R,
+    t: &Triangle,
+    place: Place,
+    access: BlockAccess,
+) {
     recorder.record(BlockAccess {
         draw: env.draw,
         primitive: t.primitive,

@@ -24,9 +24,17 @@ impl StencilFace {
     pub(crate) fn new(state: StencilFaceState, reference: u8, attached: bool) -> Self {
         let effective = [state.fail_op, state.depth_fail_op, state.pass_op]
             .map(|op| attached && op != StencilOperation::Keep && state.write_mask != 0);
-        let enabled = attached && (state.compare != CompareFunction::Always || effective.contains(&true));
-        let counts = counting(&state, effective).filter(|_| state.compare == CompareFunction::Always);
-        Self { state, reference, enabled, effective, counts }
+        let enabled =
+            attached && (state.compare != CompareFunction::Always || effective.contains(&true));
+        let counts =
+            counting(&state, effective).filter(|_| state.compare == CompareFunction::Always);
+        Self {
+            state,
+            reference,
+            enabled,
+            effective,
+            counts,
+        }
     }
 
     /// Whether something can happen to fragments that fail the depth test.
@@ -43,7 +51,10 @@ fn counting(state: &StencilFaceState, effective: [bool; 3]) -> Option<[i8; 2]> {
         StencilOperation::DecrementWrap if state.write_mask == 0xff => Some(-1),
         _ => None,
     };
-    Some([step(state.depth_fail_op, effective[1])?, step(state.pass_op, effective[2])?])
+    Some([
+        step(state.depth_fail_op, effective[1])?,
+        step(state.pass_op, effective[2])?,
+    ])
 }
 
 /// One colour target.
@@ -70,7 +81,12 @@ impl TargetConfig {
         let blends = blend.is_some_and(|b| {
             (mask.0 & 7 != 0 && uses_dst(&b.color)) || (mask.0 & 8 != 0 && uses_dst(&b.alpha))
         });
-        Self { format, blend, mask, reads: mask.0 != 0 && (blends || mask.0 != all) }
+        Self {
+            format,
+            blend,
+            mask,
+            reads: mask.0 != 0 && (blends || mask.0 != all),
+        }
     }
 }
 
@@ -114,6 +130,7 @@ impl DrawConfig<'_> {
     /// Tests wait for the shader (rules §7).
     #[inline(always)]
     pub(crate) fn is_late(&self, face: &StencilFace) -> bool {
-        self.writes_shader_depth || (self.discards && (self.depth_write || face.effective.contains(&true)))
+        self.writes_shader_depth
+            || (self.discards && (self.depth_write || face.effective.contains(&true)))
     }
 }

@@ -66,7 +66,11 @@ impl TileEdges {
                 round_to_i32(if v > -EDGE_LIMIT { v } else { -EDGE_LIMIT })
             },
         );
-        Self { e, dx: t.dx, dy: t.dy }
+        Self {
+            e,
+            dx: t.dx,
+            dy: t.dy,
+        }
     }
 
     /// Value of edge `k` at the origin of block (bx, by) of the tile.
@@ -143,7 +147,11 @@ fn triangle<L: Lanes, R: Recorder, const D24: bool>(
     recorder: &mut R,
     t: &Triangle,
 ) {
-    let (tx, ty, side) = (env.target.x as i32, env.target.y as i32, env.target.side as i32);
+    let (tx, ty, side) = (
+        env.target.x as i32,
+        env.target.y as i32,
+        env.target.side as i32,
+    );
     let r = &env.config.rect;
     let w = Window {
         x0: (r[0] - tx).max(0),
@@ -151,7 +159,12 @@ fn triangle<L: Lanes, R: Recorder, const D24: bool>(
         x1: (r[2] - 1 - tx).min(side - 1),
         y1: (r[3] - 1 - ty).min(side - 1),
     };
-    let [b0, b1, b2, b3] = [t.bounds[0] as i32, t.bounds[1] as i32, t.bounds[2] as i32, t.bounds[3] as i32];
+    let [b0, b1, b2, b3] = [
+        t.bounds[0] as i32,
+        t.bounds[1] as i32,
+        t.bounds[2] as i32,
+        t.bounds[3] as i32,
+    ];
     let (x0, y0) = ((b0 - tx).max(w.x0), (b1 - ty).max(w.y0));
     let (x1, y1) = ((b2 - tx).min(w.x1), (b3 - ty).min(w.y1));
     if x0 > x1 || y0 > y1 {
@@ -218,7 +231,10 @@ fn one_block<L: Lanes, R: Recorder, const D24: bool>(
 
 /// Classifies and runs the 4×4 blocks at (gx, gy).
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "the state of one triangle in one tile")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the state of one triangle in one tile"
+)]
 fn group<L: Lanes, R: Recorder, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
@@ -231,7 +247,10 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
 ) {
     let bx = I32::from_array(l, &GROUP_X) + I32::splat(l, gx);
     let by = I32::from_array(l, &GROUP_Y) + I32::splat(l, gy);
-    let inside = bx.ge(I32::splat(l, bx0)) & bx.le(I32::splat(l, bx1)) & by.ge(I32::splat(l, by0)) & by.le(I32::splat(l, by1));
+    let inside = bx.ge(I32::splat(l, bx0))
+        & bx.le(I32::splat(l, bx1))
+        & by.ge(I32::splat(l, by0))
+        & by.le(I32::splat(l, by1));
     let zero = I32::splat(l, 0);
     let (x, y) = (bx << 3, by << 3);
     let mut low = I32::splat(l, 0);
@@ -263,7 +282,11 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
     {
         decided = block::ask_group(l, env, first, alive, d);
     }
-    let face = if t.front { &env.config.stencil[0] } else { &env.config.stencil[1] };
+    let face = if t.front {
+        &env.config.stencil[0]
+    } else {
+        &env.config.stencil[1]
+    };
     let mut left = alive;
     if !R::ON && env.config.plain && !t.far {
         left &= !block::run_group(l, env, face, first, full, &decided);
@@ -276,7 +299,11 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
         let i = left.trailing_zeros() as usize;
         left &= left - 1;
         let (bx, by) = (gx + GROUP_X[i], gy + GROUP_Y[i]);
-        let m = if full >> i & 1 != 0 { u64::MAX } else { e.mask(l, bx, by, 0, 3) & w.mask(bx, by) };
+        let m = if full >> i & 1 != 0 {
+            u64::MAX
+        } else {
+            e.mask(l, bx, by, 0, 3) & w.mask(bx, by)
+        };
         if m == 0 {
             continue;
         }

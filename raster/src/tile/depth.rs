@@ -1,9 +1,9 @@
 //! Depth of fragments, block ranges and the depth comparison (rules §5, §7).
 
-use crate::format::D24_MAX;
-use crate::geometry::{D24_BASE_LIMIT, D24_FRACTION, D24_SCALE, Triangle};
 use super::coverage::{GROUP_X, GROUP_Y};
 use super::target::TileTarget;
+use crate::format::D24_MAX;
+use crate::geometry::{D24_BASE_LIMIT, D24_FRACTION, D24_SCALE, Triangle};
 use crate::simd::{F32, F64, I32, LANES, Lanes, round_to_i32};
 use crate::state::CompareFunction;
 use crate::texture::Block;
@@ -47,16 +47,36 @@ impl ShaderDepth {
 
 impl<const D24: bool> DepthBlock<D24> {
     /// Where nobody looks at depth.
-    pub(crate) const UNUSED: Self = Self { base: 0, slope: [0; 2], range: [0; 2], steep: None };
+    pub(crate) const UNUSED: Self = Self {
+        base: 0,
+        slope: [0; 2],
+        range: [0; 2],
+        steep: None,
+    };
 
     /// As a fragment shader sees it.
     #[inline(always)]
     pub(super) fn for_shader(&self) -> ShaderDepth {
-        let Self { base, slope, range, steep } = *self;
+        let Self {
+            base,
+            slope,
+            range,
+            steep,
+        } = *self;
         if D24 {
-            ShaderDepth::D24(DepthBlock { base, slope, range, steep })
+            ShaderDepth::D24(DepthBlock {
+                base,
+                slope,
+                range,
+                steep,
+            })
         } else {
-            ShaderDepth::Float(DepthBlock { base, slope, range, steep })
+            ShaderDepth::Float(DepthBlock {
+                base,
+                slope,
+                range,
+                steep,
+            })
         }
     }
 
@@ -70,18 +90,36 @@ impl<const D24: bool> DepthBlock<D24> {
         let steep = (D24 && t.steep).then_some([base, t.zx, t.zy]);
         let base = if D24 {
             let b = base * D24_SCALE;
-            let b = if b < D24_BASE_LIMIT { b } else { D24_BASE_LIMIT };
-            round_to_i32(if b > -D24_BASE_LIMIT { b } else { -D24_BASE_LIMIT })
+            let b = if b < D24_BASE_LIMIT {
+                b
+            } else {
+                D24_BASE_LIMIT
+            };
+            round_to_i32(if b > -D24_BASE_LIMIT {
+                b
+            } else {
+                -D24_BASE_LIMIT
+            })
         } else {
             (base as f32).to_bits() as i32
         };
-        Self { base, slope: t.slope, range, steep }
+        Self {
+            base,
+            slope: t.slope,
+            range,
+            steep,
+        }
     }
 
     /// The block whose `base` a [`GroupDepth`] has found.
     #[inline(always)]
     pub(super) fn with_base(t: &Triangle, base: i32, range: [i32; 2]) -> Self {
-        Self { base, slope: t.slope, range, steep: None }
+        Self {
+            base,
+            slope: t.slope,
+            range,
+            steep: None,
+        }
     }
 
     /// Depth of one pixel of a steep plane (rules §5).
@@ -112,8 +150,17 @@ impl<const D24: bool> DepthBlock<D24> {
         } else {
             let f = |b: i32| f32::from_bits(b as u32);
             let z = f(raw);
-            let z = if z > f(self.range[0]) { z } else { f(self.range[0]) };
-            (if z < f(self.range[1]) { z } else { f(self.range[1]) }).to_bits() as i32
+            let z = if z > f(self.range[0]) {
+                z
+            } else {
+                f(self.range[0])
+            };
+            (if z < f(self.range[1]) {
+                z
+            } else {
+                f(self.range[1])
+            })
+            .to_bits() as i32
         }
     }
 
@@ -130,7 +177,10 @@ impl<const D24: bool> DepthBlock<D24> {
     #[inline(always)]
     pub(super) fn span(&self) -> [i32; 2] {
         let (lo, hi) = self.corners();
-        [self.clamped(self.raw_at(lo[0], lo[1])), self.clamped(self.raw_at(hi[0], hi[1]))]
+        [
+            self.clamped(self.raw_at(lo[0], lo[1])),
+            self.clamped(self.raw_at(hi[0], hi[1])),
+        ]
     }
 
     /// Depths of packet `k` before clamping.
@@ -145,7 +195,8 @@ impl<const D24: bool> DepthBlock<D24> {
             let z = ix * I32::splat(l, self.slope[0]) + iy * I32::splat(l, self.slope[1]);
             (z + I32::splat(l, self.base + D24_HALF)) >> D24_FRACTION
         } else {
-            let [base, sx, sy] = [self.base, self.slope[0], self.slope[1]].map(|b| f32::from_bits(b as u32));
+            let [base, sx, sy] =
+                [self.base, self.slope[0], self.slope[1]].map(|b| f32::from_bits(b as u32));
             let z = (F32::splat(l, base) + ix.to_f32() * sx) + iy.to_f32() * sy;
             z.to_bits().to_i32()
         }
@@ -156,17 +207,29 @@ impl<const D24: bool> DepthBlock<D24> {
     pub(super) fn packet<L: Lanes>(&self, l: L, k: usize) -> I32<L> {
         let raw = self.raw_packet(l, k);
         if D24 {
-            raw.max(I32::splat(l, self.range[0])).min(I32::splat(l, self.range[1]))
+            raw.max(I32::splat(l, self.range[0]))
+                .min(I32::splat(l, self.range[1]))
         } else {
             let f = |b: i32| f32::from_bits(b as u32);
-            raw.to_u32().to_f32_bits().clamp(f(self.range[0]), f(self.range[1])).to_bits().to_i32()
+            raw.to_u32()
+                .to_f32_bits()
+                .clamp(f(self.range[0]), f(self.range[1]))
+                .to_bits()
+                .to_i32()
         }
     }
 
     /// Pixels of the block at (x, y) whose depth, before bias and clamping, is not
     /// beyond the far end of the viewport's range (rules §4).
     #[inline(always)]
-    pub(super) fn not_beyond_far<L: Lanes>(l: L, t: &Triangle, x: u32, y: u32, range: [i32; 2], reversed: bool) -> u64 {
+    pub(super) fn not_beyond_far<L: Lanes>(
+        l: L,
+        t: &Triangle,
+        x: u32,
+        y: u32,
+        range: [i32; 2],
+        reversed: bool,
+    ) -> u64 {
         let plane = Self::at_depth(t, t.depth_base(x, y), range);
         let far = range[usize::from(!reversed)];
         let mut m = 0;
@@ -175,8 +238,14 @@ impl<const D24: bool> DepthBlock<D24> {
             let within = match (D24, reversed) {
                 (true, false) => z.le(I32::splat(l, far)),
                 (true, true) => z.ge(I32::splat(l, far)),
-                (false, false) => z.to_u32().to_f32_bits().le(F32::splat(l, f32::from_bits(far as u32))),
-                (false, true) => z.to_u32().to_f32_bits().ge(F32::splat(l, f32::from_bits(far as u32))),
+                (false, false) => z
+                    .to_u32()
+                    .to_f32_bits()
+                    .le(F32::splat(l, f32::from_bits(far as u32))),
+                (false, true) => z
+                    .to_u32()
+                    .to_f32_bits()
+                    .ge(F32::splat(l, f32::from_bits(far as u32))),
             };
             m |= u64::from(within.bits()) << (16 * k);
         }
@@ -194,16 +263,29 @@ pub(super) struct GroupDepth<L: Lanes, const D24: bool> {
 impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
     /// Planes over the blocks of the group at block (gx, gy) of the tile.
     #[inline(always)]
-    pub(super) fn new(l: L, t: &Triangle, target: &TileTarget<'_>, [gx, gy]: [i32; 2], range: [i32; 2]) -> Self {
+    pub(super) fn new(
+        l: L,
+        t: &Triangle,
+        target: &TileTarget<'_>,
+        [gx, gy]: [i32; 2],
+        range: [i32; 2],
+    ) -> Self {
         let x = (I32::from_array(l, &GROUP_X) << 3) + I32::splat(l, target.x as i32 + 8 * gx);
         let y = (I32::from_array(l, &GROUP_Y) << 3) + I32::splat(l, target.y as i32 + 8 * gy);
         let dx = (F64::from_f32(x.to_f32()) + 0.5) - f64::from(t.x) * (1.0 / 256.0);
         let dy = (F64::from_f32(y.to_f32()) + 0.5) - f64::from(t.y) * (1.0 / 256.0);
         let along = F64::splat(l, t.zx) * dx + F64::splat(l, t.zy) * dy;
         let z = (F64::splat(l, f64::from(t.z)) + along) + t.bias;
-        let base =
-            if D24 { (z * D24_SCALE).round_to_i32(D24_BASE_LIMIT) } else { z.to_f32().to_bits().to_i32() };
-        Self { base, slope: t.slope, range }
+        let base = if D24 {
+            (z * D24_SCALE).round_to_i32(D24_BASE_LIMIT)
+        } else {
+            z.to_f32().to_bits().to_i32()
+        };
+        Self {
+            base,
+            slope: t.slope,
+            range,
+        }
     }
 
     /// The blocks' bases.
@@ -219,10 +301,11 @@ impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
         if D24 {
             let offset = self.slope[0] * ix + self.slope[1] * iy + D24_HALF;
             let z = (self.base + I32::splat(l, offset)) >> D24_FRACTION;
-            z.max(I32::splat(l, self.range[0])).min(I32::splat(l, self.range[1]))
+            z.max(I32::splat(l, self.range[0]))
+                .min(I32::splat(l, self.range[1]))
         } else {
-            let [sx, sy, lo, hi] =
-                [self.slope[0], self.slope[1], self.range[0], self.range[1]].map(|b| f32::from_bits(b as u32));
+            let [sx, sy, lo, hi] = [self.slope[0], self.slope[1], self.range[0], self.range[1]]
+                .map(|b| f32::from_bits(b as u32));
             let z = (self.base.to_u32().to_f32_bits() + sx * ix as f32) + sy * iy as f32;
             z.clamp(lo, hi).to_bits().to_i32()
         }
@@ -231,8 +314,17 @@ impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
     /// Smallest and largest clamped depth of each block.
     #[inline(always)]
     pub(super) fn span(&self) -> [I32<L>; 2] {
-        let corner = |k: usize, far: i32| if (self.slope[k] < 0) == (far == 0) { 7 } else { 0 };
-        [self.at([corner(0, 0), corner(1, 0)]), self.at([corner(0, 1), corner(1, 1)])]
+        let corner = |k: usize, far: i32| {
+            if (self.slope[k] < 0) == (far == 0) {
+                7
+            } else {
+                0
+            }
+        };
+        [
+            self.at([corner(0, 0), corner(1, 0)]),
+            self.at([corner(0, 1), corner(1, 1)]),
+        ]
     }
 }
 
@@ -274,7 +366,10 @@ pub(super) fn decide_group<L: Lanes>(
         CompareFunction::NotEqual => (apart, same),
         CompareFunction::Never | CompareFunction::Always => return Decisions::default(),
     };
-    Decisions { pass: pass.bits(), fail: fail.bits() & !pass.bits() }
+    Decisions {
+        pass: pass.bits(),
+        fail: fail.bits() & !pass.bits(),
+    }
 }
 
 /// What zmin/zmax say about a depth test.
@@ -314,12 +409,16 @@ pub(super) fn load<L: Lanes>(l: L, b: &Block<u32>, k: usize) -> I32<L> {
 /// Stores the lanes of `mask` to packet `k`.
 #[inline(always)]
 pub(super) fn store<L: Lanes>(l: L, b: &mut Block<u32>, k: usize, z: I32<L>, mask: u16) {
-    let words: &mut [u32; LANES] = (&mut b.0[16 * k..16 * k + 16]).try_into().expect("16 of 64");
+    let words: &mut [u32; LANES] = (&mut b.0[16 * k..16 * k + 16])
+        .try_into()
+        .expect("16 of 64");
     if mask == u16::MAX {
         return z.to_u32().store(words);
     }
     let old = crate::simd::U32::from_array(l, words);
-    crate::simd::Mask::from_bits(l, mask).select_u32(z.to_u32(), old).store(words);
+    crate::simd::Mask::from_bits(l, mask)
+        .select_u32(z.to_u32(), old)
+        .store(words);
 }
 
 /// Pixels that pass, from those that are less than and equal to the stored depth.

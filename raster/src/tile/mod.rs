@@ -15,8 +15,8 @@ mod shade;
 mod stencil;
 mod target;
 
-pub(crate) use depth::ShaderDepth;
 pub(crate) use config::{DrawConfig, StencilFace, TargetConfig};
+pub(crate) use depth::ShaderDepth;
 pub(crate) use target::{ColorTile, DepthTile, TileTarget};
 
 use crate::counters::{Accesses, Counters, EventCounters, FragmentCounters, TileCounters};
@@ -76,7 +76,10 @@ impl TileStageCounters {
             tiles: c.tiles,
             events: c.events,
             accesses: c.accesses,
-            shader: ShaderEvents { fetches: c.accesses.tex_fetch, texels: c.accesses.tex_texel },
+            shader: ShaderEvents {
+                fetches: c.accesses.tex_fetch,
+                texels: c.accesses.tex_texel,
+            },
         }
     }
 

@@ -33,7 +33,13 @@ pub(super) fn write<L: Lanes>(
         }
         access.color_write[i] = live;
         access.color_read[i] = if target.reads { live } else { 0 };
-        let mut w = Writer { l, target, attachment: i, constant: env.config.blend_constant, c: &mut *env.counters };
+        let mut w = Writer {
+            l,
+            target,
+            attachment: i,
+            constant: env.config.blend_constant,
+            c: &mut *env.counters,
+        };
         w.block(&mut env.target.color[i], place.index, env.outputs, live);
     }
 }
@@ -51,7 +57,13 @@ type Channels<T> = [T; 4];
 impl<L: Lanes> Writer<'_, L> {
     /// Writes all live packets of a block, in code of its own for each family of formats.
     #[inline(always)]
-    fn block(&mut self, tile: &mut ColorTile<'_>, block: usize, out: &[PacketOutput; PACKETS], live: u64) {
+    fn block(
+        &mut self,
+        tile: &mut ColorTile<'_>,
+        block: usize,
+        out: &[PacketOutput; PACKETS],
+        live: u64,
+    ) {
         let l = self.l;
         match (self.target.format, tile) {
             (Format::Rgba8Unorm, ColorTile::B32(b)) => outlined(
@@ -86,7 +98,9 @@ impl<L: Lanes> Writer<'_, L> {
                         out,
                         live,
                         #[inline(always)]
-                        |w, k, src, live| w.store32(words(&mut b[block].0, k), src[0].to_bits(), live),
+                        |w, k, src, live| {
+                            w.store32(words(&mut b[block].0, k), src[0].to_bits(), live)
+                        },
                     );
                 },
             ),
@@ -157,7 +171,9 @@ impl<L: Lanes> Writer<'_, L> {
     fn store32(&mut self, words: &mut [u32; LANES], new: U32<L>, live: u16) {
         let old = U32::from_array(self.l, words);
         self.silent(new.eq(old).bits() & live);
-        Mask::from_bits(self.l, live).select_u32(new, old).store(words);
+        Mask::from_bits(self.l, live)
+            .select_u32(new, old)
+            .store(words);
     }
 
     /// Source channels as bytes, limited and rounded half to even; counts what
@@ -175,20 +191,20 @@ impl<L: Lanes> Writer<'_, L> {
         each4(
             #[inline(always)]
             |c| {
-            let v = src[c];
-            if COUNT && self.target.mask.contains(c) {
-                let fits = v.ge(zero) & v.le(one);
-                let beyond = !fits.bits() & live;
-                if beyond != 0 {
-                    let e = &mut self.c.events;
-                    e.source_clamped[self.attachment] += u64::from(beyond.count_ones());
-                    e.nan_canonicalised += u64::from((v.ne(v).bits() & live).count_ones());
+                let v = src[c];
+                if COUNT && self.target.mask.contains(c) {
+                    let fits = v.ge(zero) & v.le(one);
+                    let beyond = !fits.bits() & live;
+                    if beyond != 0 {
+                        let e = &mut self.c.events;
+                        e.source_clamped[self.attachment] += u64::from(beyond.count_ones());
+                        e.nan_canonicalised += u64::from((v.ne(v).bits() & live).count_ones());
+                    }
                 }
-            }
-            // Adding 2²³ rounds a float below 2²² to an integer, ties to even.
-            let scaled = v.clamp(0.0, 1.0) * 255.0 + 8_388_608.0;
-            scaled.to_bits().to_i32() & I32::splat(self.l, 0xff)
-        },
+                // Adding 2²³ rounds a float below 2²² to an integer, ties to even.
+                let scaled = v.clamp(0.0, 1.0) * 255.0 + 8_388_608.0;
+                scaled.to_bits().to_i32() & I32::splat(self.l, 0xff)
+            },
         )
     }
 
@@ -204,15 +220,20 @@ impl<L: Lanes> Writer<'_, L> {
             return self.rgba8_plain(words, pack(&s), op, live);
         }
         let old = U32::from_array(l, words);
-        let d: Channels<I32<L>> =
-            each4(
-                #[inline(always)]
-                |c| (old >> (8 * c as u32)).to_i32() & I32::splat(l, 0xff),
-            );
+        let d: Channels<I32<L>> = each4(
+            #[inline(always)]
+            |c| (old >> (8 * c as u32)).to_i32() & I32::splat(l, 0xff),
+        );
         let new = self.blend_bytes(&s, &d, true, live);
         let kept = each4(
             #[inline(always)]
-            |c| if self.target.mask.contains(c) { new[c] } else { d[c] },
+            |c| {
+                if self.target.mask.contains(c) {
+                    new[c]
+                } else {
+                    d[c]
+                }
+            },
         );
         self.store32(words, pack(&kept), live);
     }
@@ -239,7 +260,14 @@ impl<L: Lanes> Writer<'_, L> {
     }
 
     #[inline(always)]
-    fn unorm(&mut self, tile: &mut ColorTile<'_>, block: usize, k: usize, src: &Channels<F32<L>>, live: u16) {
+    fn unorm(
+        &mut self,
+        tile: &mut ColorTile<'_>,
+        block: usize,
+        k: usize,
+        src: &Channels<F32<L>>,
+        live: u16,
+    ) {
         let s = self.bytes(src, live);
         let at = 16 * k..16 * k + 16;
         let raw: [u32; LANES] = match &*tile {
@@ -250,8 +278,17 @@ impl<L: Lanes> Writer<'_, L> {
         let old = U32::from_array(self.l, &raw);
         let byte = I32::splat(self.l, 0xff);
         let zero = I32::splat(self.l, 0);
-        let d = [old.to_i32() & byte, (old >> 8).to_i32() & byte, zero, I32::splat(self.l, 255)];
-        let new = if self.target.blend.is_some() { self.blend_bytes(&s, &d, false, live) } else { s };
+        let d = [
+            old.to_i32() & byte,
+            (old >> 8).to_i32() & byte,
+            zero,
+            I32::splat(self.l, 255),
+        ];
+        let new = if self.target.blend.is_some() {
+            self.blend_bytes(&s, &d, false, live)
+        } else {
+            s
+        };
         let kept: Channels<I32<L>> = each4(
             #[inline(always)]
             |c| match c {
@@ -263,8 +300,14 @@ impl<L: Lanes> Writer<'_, L> {
         let mut words = raw;
         self.store32(&mut words, pack(&kept), live);
         match tile {
-            ColorTile::B8(b) => b[block].0[at].iter_mut().zip(words).for_each(|(b, w)| *b = w as u8),
-            ColorTile::B16(b) => b[block].0[at].iter_mut().zip(words).for_each(|(b, w)| *b = w as u16),
+            ColorTile::B8(b) => b[block].0[at]
+                .iter_mut()
+                .zip(words)
+                .for_each(|(b, w)| *b = w as u8),
+            ColorTile::B16(b) => b[block].0[at]
+                .iter_mut()
+                .zip(words)
+                .for_each(|(b, w)| *b = w as u16),
             _ => {}
         }
     }
@@ -278,35 +321,37 @@ impl<L: Lanes> Writer<'_, L> {
         has_alpha: bool,
         live: u16,
     ) -> Channels<I32<L>> {
-        let Some(blend) = self.target.blend else { return *s };
+        let Some(blend) = self.target.blend else {
+            return *s;
+        };
         let l = self.l;
         let constant = self.constant.map(|c| i32::from(format::unorm8_from_f32(c)));
         let d_alpha = if has_alpha { d[3] } else { I32::splat(l, 255) };
         each4(
             #[inline(always)]
             |c| {
-            if !self.target.mask.contains(c) {
-                return d[c];
-            }
-            let b = if c < 3 { &blend.color } else { &blend.alpha };
-            match b.operation {
-                BlendOperation::Min => return s[c].min(d[c]),
-                BlendOperation::Max => return s[c].max(d[c]),
-                _ => {}
-            }
-            let sf = s[c] * byte_factor(l, b.src_factor, c, s, d, d_alpha, constant);
-            let df = d[c] * byte_factor(l, b.dst_factor, c, s, d, d_alpha, constant);
-            let t = match b.operation {
-                BlendOperation::Subtract => sf - df,
-                BlendOperation::ReverseSubtract => df - sf,
-                _ => sf + df,
-            };
-            let (zero, top) = (I32::splat(l, 0), I32::splat(l, 255 * 255));
-            let limited = (t.lt(zero) | t.gt(top)).bits() & live;
-            self.saturated(limited.count_ones());
-            let t = t.max(zero).min(top) + I32::splat(l, 128);
-            (t + (t >> 8)) >> 8
-        },
+                if !self.target.mask.contains(c) {
+                    return d[c];
+                }
+                let b = if c < 3 { &blend.color } else { &blend.alpha };
+                match b.operation {
+                    BlendOperation::Min => return s[c].min(d[c]),
+                    BlendOperation::Max => return s[c].max(d[c]),
+                    _ => {}
+                }
+                let sf = s[c] * byte_factor(l, b.src_factor, c, s, d, d_alpha, constant);
+                let df = d[c] * byte_factor(l, b.dst_factor, c, s, d, d_alpha, constant);
+                let t = match b.operation {
+                    BlendOperation::Subtract => sf - df,
+                    BlendOperation::ReverseSubtract => df - sf,
+                    _ => sf + df,
+                };
+                let (zero, top) = (I32::splat(l, 0), I32::splat(l, 255 * 255));
+                let limited = (t.lt(zero) | t.gt(top)).bits() & live;
+                self.saturated(limited.count_ones());
+                let t = t.max(zero).min(top) + I32::splat(l, 128);
+                (t + (t >> 8)) >> 8
+            },
         )
     }
 
@@ -321,7 +366,10 @@ impl<L: Lanes> Writer<'_, L> {
         e.source_clamped[self.attachment] += u64::from(beyond.count_ones());
         e.nan_canonicalised += u64::from((src.ne(src).bits() & live).count_ones());
         // NaN goes to 0, as `as` does.
-        let s = rounded.to_i32().max(I32::splat(l, -32768)).min(I32::splat(l, 32767));
+        let s = rounded
+            .to_i32()
+            .max(I32::splat(l, -32768))
+            .min(I32::splat(l, 32767));
         let d = I32::from_array(l, &words.map(|w| i32::from(w as i16)));
         let new = match self.target.blend {
             None => s,
@@ -340,8 +388,16 @@ impl<L: Lanes> Writer<'_, L> {
     fn blend_sint16(&mut self, b: &BlendComponent, s: I32<L>, d: I32<L>, live: u16) -> I32<L> {
         let l = self.l;
         let zero = I32::splat(l, 0);
-        let sf = if b.src_factor == BlendFactor::One { s } else { zero };
-        let df = if b.dst_factor == BlendFactor::One { d } else { zero };
+        let sf = if b.src_factor == BlendFactor::One {
+            s
+        } else {
+            zero
+        };
+        let df = if b.dst_factor == BlendFactor::One {
+            d
+        } else {
+            zero
+        };
         let t = match b.operation {
             BlendOperation::Add => sf + df,
             BlendOperation::Subtract => sf - df,
@@ -356,7 +412,14 @@ impl<L: Lanes> Writer<'_, L> {
 
     /// Half and single floats.
     #[inline(always)]
-    fn float(&mut self, tile: &mut ColorTile<'_>, block: usize, k: usize, src: &Channels<F32<L>>, live: u16) {
+    fn float(
+        &mut self,
+        tile: &mut ColorTile<'_>,
+        block: usize,
+        k: usize,
+        src: &Channels<F32<L>>,
+        live: u16,
+    ) {
         let l = self.l;
         let format = self.target.format;
         let half = matches!(format, Format::R16Float | Format::Rgba16Float);
@@ -377,16 +440,34 @@ impl<L: Lanes> Writer<'_, L> {
         for c in (0..n).filter(|&c| self.target.mask.contains(c)) {
             let v = match self.target.blend {
                 None => src[c],
-                Some(b) => blend_float(l, if c < 3 { &b.color } else { &b.alpha }, c, src, &d, d_alpha, self.constant),
+                Some(b) => blend_float(
+                    l,
+                    if c < 3 { &b.color } else { &b.alpha },
+                    c,
+                    src,
+                    &d,
+                    d_alpha,
+                    self.constant,
+                ),
             };
             let nan = v.ne(v).bits() & live;
             self.c.events.nan_canonicalised += u64::from(nan.count_ones());
             let v = v.canonical_nan();
-            let raw = if half { v.to_array().map(|x| u32::from(format::f16_from_f32(x))) } else { v.to_bits().to_array() };
+            let raw = if half {
+                v.to_array().map(|x| u32::from(format::f16_from_f32(x)))
+            } else {
+                v.to_bits().to_array()
+            };
             let new = U32::from_array(l, &raw);
             let was = U32::from_array(l, &old[c]);
             same &= new.eq(was).bits();
-            store_channel(tile, block, k, c, &Mask::from_bits(l, live).select_u32(new, was).to_array());
+            store_channel(
+                tile,
+                block,
+                k,
+                c,
+                &Mask::from_bits(l, live).select_u32(new, was).to_array(),
+            );
         }
         self.silent(same);
     }
@@ -395,7 +476,9 @@ impl<L: Lanes> Writer<'_, L> {
 /// Packet `k` of a block's values.
 #[inline(always)]
 fn words<T>(block: &mut [T; 64], k: usize) -> &mut [T; LANES] {
-    (&mut block[16 * k..16 * k + 16]).try_into().expect("16 of 64")
+    (&mut block[16 * k..16 * k + 16])
+        .try_into()
+        .expect("16 of 64")
 }
 
 /// Red in the low byte.
@@ -418,9 +501,11 @@ fn spread(lanes: u16) -> u64 {
 /// The operation, where it is the same for all channels and needs no factors.
 #[inline(always)]
 fn plain_operation(b: &BlendState) -> Option<BlendOperation> {
-    let one = |c: &BlendComponent| c.src_factor == BlendFactor::One && c.dst_factor == BlendFactor::One;
+    let one =
+        |c: &BlendComponent| c.src_factor == BlendFactor::One && c.dst_factor == BlendFactor::One;
     let free = matches!(b.color.operation, BlendOperation::Min | BlendOperation::Max);
-    (b.color.operation == b.alpha.operation && (free || (one(&b.color) && one(&b.alpha)))).then_some(b.color.operation)
+    (b.color.operation == b.alpha.operation && (free || (one(&b.color) && one(&b.alpha))))
+        .then_some(b.color.operation)
 }
 
 #[inline(always)]
@@ -506,9 +591,15 @@ fn float_factor<L: Lanes>(
 fn load_channel(tile: &ColorTile<'_>, block: usize, k: usize, c: usize, out: &mut [u32; LANES]) {
     let at = 16 * k..16 * k + 16;
     match tile {
-        ColorTile::B16(b) => out.iter_mut().zip(&b[block].0[at]).for_each(|(o, v)| *o = u32::from(*v)),
+        ColorTile::B16(b) => out
+            .iter_mut()
+            .zip(&b[block].0[at])
+            .for_each(|(o, v)| *o = u32::from(*v)),
         ColorTile::B32(b) => out.copy_from_slice(&b[block].0[at]),
-        ColorTile::B16x4(b) => out.iter_mut().zip(&b[block].0[c][at]).for_each(|(o, v)| *o = u32::from(*v)),
+        ColorTile::B16x4(b) => out
+            .iter_mut()
+            .zip(&b[block].0[c][at])
+            .for_each(|(o, v)| *o = u32::from(*v)),
         ColorTile::B32x4(b) => out.copy_from_slice(&b[block].0[c][at]),
         ColorTile::B8(_) => unreachable!("no float format has one byte"),
     }
@@ -518,9 +609,15 @@ fn load_channel(tile: &ColorTile<'_>, block: usize, k: usize, c: usize, out: &mu
 fn store_channel(tile: &mut ColorTile<'_>, block: usize, k: usize, c: usize, v: &[u32; LANES]) {
     let at = 16 * k..16 * k + 16;
     match tile {
-        ColorTile::B16(b) => b[block].0[at].iter_mut().zip(v).for_each(|(o, v)| *o = *v as u16),
+        ColorTile::B16(b) => b[block].0[at]
+            .iter_mut()
+            .zip(v)
+            .for_each(|(o, v)| *o = *v as u16),
         ColorTile::B32(b) => b[block].0[at].copy_from_slice(v),
-        ColorTile::B16x4(b) => b[block].0[c][at].iter_mut().zip(v).for_each(|(o, v)| *o = *v as u16),
+        ColorTile::B16x4(b) => b[block].0[c][at]
+            .iter_mut()
+            .zip(v)
+            .for_each(|(o, v)| *o = *v as u16),
         ColorTile::B32x4(b) => b[block].0[c][at].copy_from_slice(v),
         ColorTile::B8(_) => unreachable!("no float format has one byte"),
     }

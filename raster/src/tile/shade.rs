@@ -32,11 +32,22 @@ impl Frame {
             #[inline(always)]
             |k| {
                 let s = chunk.screen(shaded, t.v[k]);
-                (f64::from(s.x) * (1.0 / 256.0), f64::from(s.y) * (1.0 / 256.0))
+                (
+                    f64::from(s.x) * (1.0 / 256.0),
+                    f64::from(s.y) * (1.0 / 256.0),
+                )
             },
         );
         let (ax, ay, bx, by) = (q.0 - p.0, q.1 - p.1, r.0 - p.0, r.1 - p.1);
-        Self { x0: p.0, y0: p.1, ax, ay, bx, by, det: ax * by - bx * ay }
+        Self {
+            x0: p.0,
+            y0: p.1,
+            ax,
+            ay,
+            bx,
+            by,
+            det: ax * by - bx * ay,
+        }
     }
 
     /// Value at the origin pixel of the block at (x, y), and gradients.
@@ -46,7 +57,8 @@ impl Frame {
         let (e1, e2) = (q[1] - q[0], q[2] - q[0]);
         let gx = (e1 * self.by - e2 * self.ay) / self.det;
         let gy = (e2 * self.ax - e1 * self.bx) / self.det;
-        let base = q[0] + (gx * ((f64::from(x) + 0.5) - self.x0) + gy * ((f64::from(y) + 0.5) - self.y0));
+        let base =
+            q[0] + (gx * ((f64::from(x) + 0.5) - self.x0) + gy * ((f64::from(y) + 0.5) - self.y0));
         [base as f32, gx as f32, gy as f32]
     }
 }
@@ -97,7 +109,11 @@ fn prepare_varyings<L: Lanes>(l: L, env: &mut Env<'_, '_>, t: &Triangle) {
         let flat = config.flat >> i & 1 != 0;
         for k in 0..3 {
             let a = chunk.varying(shaded, t.v[if flat { 0 } else { k }], i, n);
-            q[k][i] = if config.perspective >> i & 1 != 0 { a * inv_w[k] } else { a };
+            q[k][i] = if config.perspective >> i & 1 != 0 {
+                a * inv_w[k]
+            } else {
+                a
+            };
         }
     }
     let [q0, q1, q2] = each3(
@@ -116,7 +132,11 @@ fn prepare_varyings<L: Lanes>(l: L, env: &mut Env<'_, '_>, t: &Triangle) {
         (v.gx[i], v.gy[i], v.planes.gx[i], v.planes.gy[i]) = (0.0, 0.0, -0.0, -0.0);
     }
     if config.perspective != 0 {
-        let [q0, q1, q2] = [f64::from(inv_w[0]), f64::from(inv_w[1]), f64::from(inv_w[2])];
+        let [q0, q1, q2] = [
+            f64::from(inv_w[0]),
+            f64::from(inv_w[1]),
+            f64::from(inv_w[2]),
+        ];
         let (e1, e2) = (q1 - q0, q2 - q0);
         let gx = (e1 * frame.by - e2 * frame.ay) / frame.det;
         let gy = (e2 * frame.ax - e1 * frame.bx) / frame.det;
@@ -129,10 +149,17 @@ fn prepare_varyings<L: Lanes>(l: L, env: &mut Env<'_, '_>, t: &Triangle) {
 #[inline(always)]
 fn move_varyings<L: Lanes>(l: L, env: &mut Env<'_, '_>, place: Place) {
     let v = &mut *env.varyings;
-    let (dx, dy) = ((f64::from(place.x) + 0.5) - v.x0, (f64::from(place.y) + 0.5) - v.y0);
+    let (dx, dy) = (
+        (f64::from(place.x) + 0.5) - v.x0,
+        (f64::from(place.y) + 0.5) - v.y0,
+    );
     let q = F64::from_array(l, &v.q);
     let base = q + (F64::from_array(l, &v.gx) * dx + F64::from_array(l, &v.gy) * dy);
-    base.to_f32().store((&mut v.planes.base[..LANES]).try_into().expect("16 varyings"));
+    base.to_f32().store(
+        (&mut v.planes.base[..LANES])
+            .try_into()
+            .expect("16 varyings"),
+    );
     let mut flat = env.config.flat;
     while flat != 0 {
         let i = flat.trailing_zeros() as usize;
@@ -153,7 +180,9 @@ pub(super) fn run<L: Lanes, const D24: bool>(
     plane: &DepthBlock<D24>,
     live: u64,
 ) -> u64 {
-    let Some(shader) = env.config.shader else { return 0 };
+    let Some(shader) = env.config.shader else {
+        return 0;
+    };
     if env.config.varyings != 0 {
         if !env.varyings.ready {
             outlined(
@@ -215,7 +244,12 @@ pub(super) fn shader_depths<const D24: bool>(env: &mut Env<'_, '_>, live: u64) -
 
 /// Pixels of the block on the right side of every user clip plane (rules §4).
 #[inline(always)]
-pub(super) fn inside_clip_planes<L: Lanes>(l: L, env: &Env<'_, '_>, t: &Triangle, place: Place) -> u64 {
+pub(super) fn inside_clip_planes<L: Lanes>(
+    l: L,
+    env: &Env<'_, '_>,
+    t: &Triangle,
+    place: Place,
+) -> u64 {
     if env.config.clip_planes.is_empty() {
         return u64::MAX;
     }

@@ -42,12 +42,19 @@ pub(super) fn add<L: Lanes>(l: L, block: &mut Block<u8>, mask: u64, step: i8) {
     let isa = l.isa();
     let old = load(l, block);
     let new = old + u8x64::splat(isa, step as u8);
-    isa.select_u8x64(mask8x64::from_bitmask(isa, mask), new, old).store_slice(&mut block.0);
+    isa.select_u8x64(mask8x64::from_bitmask(isa, mask), new, old)
+        .store_slice(&mut block.0);
 }
 
 /// Adds `step` to every pixel of the blocks `first + i`, bit i of `which` set.
 #[inline(always)]
-pub(super) fn add_to_blocks<L: Lanes>(l: L, blocks: &mut [Block<u8>], first: usize, which: u16, step: i8) {
+pub(super) fn add_to_blocks<L: Lanes>(
+    l: L,
+    blocks: &mut [Block<u8>],
+    first: usize,
+    which: u16,
+    step: i8,
+) {
     let step = u8x64::splat(l.isa(), step as u8);
     let mut left = which;
     while left != 0 {
@@ -59,7 +66,13 @@ pub(super) fn add_to_blocks<L: Lanes>(l: L, blocks: &mut [Block<u8>], first: usi
 
 /// Applies `op` to the pixels of `mask`; gives those whose byte stayed the same.
 #[inline(always)]
-pub(super) fn apply<L: Lanes>(l: L, face: &StencilFace, op: StencilOperation, block: &mut Block<u8>, mask: u64) -> u64 {
+pub(super) fn apply<L: Lanes>(
+    l: L,
+    face: &StencilFace,
+    op: StencilOperation,
+    block: &mut Block<u8>,
+    mask: u64,
+) -> u64 {
     let isa = l.isa();
     let old = load(l, block);
     let one = u8x64::splat(isa, 1);
@@ -81,10 +94,22 @@ pub(super) fn apply<L: Lanes>(l: L, face: &StencilFace, op: StencilOperation, bl
         let w = u8x64::splat(isa, writable);
         (new & w) | (old & !w)
     };
-    let stored =
-        if mask == u64::MAX { new } else { isa.select_u8x64(mask8x64::from_bitmask(isa, mask), new, old) };
+    let stored = if mask == u64::MAX {
+        new
+    } else {
+        isa.select_u8x64(mask8x64::from_bitmask(isa, mask), new, old)
+    };
     stored.store_slice(&mut block.0);
-    let never_same =
-        whole && matches!(op, StencilOperation::IncrementWrap | StencilOperation::DecrementWrap | StencilOperation::Invert);
-    if never_same { 0 } else { old.simd_eq(new).to_bitmask() & mask }
+    let never_same = whole
+        && matches!(
+            op,
+            StencilOperation::IncrementWrap
+                | StencilOperation::DecrementWrap
+                | StencilOperation::Invert
+        );
+    if never_same {
+        0
+    } else {
+        old.simd_eq(new).to_bitmask() & mask
+    }
 }

@@ -41,7 +41,12 @@ impl TileTarget<'_> {
         if x + 8 <= self.width && y + 8 <= self.height {
             return u64::MAX;
         }
-        rect_mask(0, 0, self.width.saturating_sub(x).min(8), self.height.saturating_sub(y).min(8))
+        rect_mask(
+            0,
+            0,
+            self.width.saturating_sub(x).min(8),
+            self.height.saturating_sub(y).min(8),
+        )
     }
 }
 
@@ -53,7 +58,11 @@ pub(crate) fn rect_mask(x0: u32, y0: u32, x1: u32, y1: u32) -> u64 {
     }
     let row = ((1u64 << x1) - 1) & !((1u64 << x0) - 1);
     let rows = row * 0x0101_0101_0101_0101;
-    let below = if y1 == 8 { u64::MAX } else { (1u64 << (8 * y1)) - 1 };
+    let below = if y1 == 8 {
+        u64::MAX
+    } else {
+        (1u64 << (8 * y1)) - 1
+    };
     rows & below & !((1u64 << (8 * y0)) - 1)
 }
 
@@ -69,7 +78,10 @@ mod tests {
                     let m = rect_mask(x0, y0, x1, y1);
                     for i in 0..64u32 {
                         let (x, y) = (i % 8, i / 8);
-                        assert_eq!(m >> i & 1 != 0, (x0..x1).contains(&x) && (y0..y1).contains(&y));
+                        assert_eq!(
+                            m >> i & 1 != 0,
+                            (x0..x1).contains(&x) && (y0..y1).contains(&y)
+                        );
                     }
                 }
             }

@@ -1,0 +1,249 @@
+//! Reading texels: gathers, one lane at a time, and decoding, over lanes.
+
+use super::plane::{Block, Block4, ColorBlocks, Plane};
+use super::{Layout, Texture};
+use crate::format::{D24_MAX, Format};
+use crate::simd::{F32, I32, LANES, Lanes, U32, each4};
+
+/// Which texel each lane reads.
+pub(super) struct Texels<'a> {
+    pub(super) mip: u32,
+    /// Slices or faces.
+    pub(super) layer: &'a [i32; LANES],
+    pub(super) x: &'a [i32; LANES],
+    pub(super) y: &'a [i32; LANES],
+    /// Lanes that read; the indices of the others may be anything.
+    pub(super) lanes: u16,
+}
+
+/// Which part of a texture is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Aspect {
+    /// Colour, or depth.
+    Main,
+    /// Stencil.
+    Stencil,
+}
+
+/// Words by lane: packed formats in the first, others a channel a word.
+type Words = [[u32; LANES]; 4];
+
+/// The stored bits of texels, 0 in lanes that do not read. It does not depend on
+/// the instruction set.
+pub(super) fn gather(texture: &Texture, aspect: Aspect, t: &Texels<'_>) -> Words {
+    let mut words = [[0; LANES]; 4];
+    let layout = &texture.layouts[t.mip as usize];
+    let planes = &texture.planes[t.mip as usize];
+    let mut rest = t.lanes;
+    while rest != 0 {
+        let layer = t.layer[rest.trailing_zeros() as usize];
+        let same = if planes.len() == 1 {
+            rest
+        } else {
+            rest & same_layer(t.layer, layer)
+        };
+        let source = Source {
+            layout,
+            t,
+            lanes: same,
+        };
+        source.take_plane(&planes[layer as usize], aspect, &mut words);
+        rest &= !same;
+    }
+    words
+}
+
+fn same_layer(layers: &[i32; LANES], layer: i32) -> u16 {
+    layers
+        .iter()
+        .rev()
+        .fold(0, |m, l| m << 1 | u16::from(*l == layer))
+}
+
+/// The lanes that read from one plane.
+struct Source<'a> {
+    layout: &'a Layout,
+    t: &'a Texels<'a>,
+    lanes: u16,
+}
+
+impl Source<'_> {
+    fn take_plane(&self, plane: &Plane, aspect: Aspect, words: &mut Words) {
+        match plane {
+            Plane::Color(ColorBlocks::B8(v)) => self.take(v, &mut words[0]),
+            Plane::Color(ColorBlocks::B16(v)) => self.take(v, &mut words[0]),
+            Plane::Color(ColorBlocks::B32(v)) => self.take(v, &mut words[0]),
+            Plane::Color(ColorBlocks::B16x4(v)) => self.take_four(v, words),
+            Plane::Color(ColorBlocks::B32x4(v)) => self.take_four(v, words),
+            Plane::Depth(d) if aspect == Aspect::Stencil => self.take(&d.stencil, &mut words[0]),
+            Plane::Depth(d) => self.take(&d.depth, &mut words[0]),
+            Plane::Lent => {}
+        }
+    }
+
+    #[inline(always)]
+    fn place(&self, lane: usize) -> (usize, usize) {
+        self.layout
+            .locate(self.t.x[lane] as u32, self.t.y[lane] as u32)
+    }
+
+    #[inline(always)]
+    fn take<T: Copy + Into<u32>>(&self, blocks: &[Block<T>], out: &mut [u32; LANES]) {
+        if self.lanes == u16::MAX {
+            for (lane, out) in out.iter_mut().enumerate() {
+                let (b, i) = self.place(lane);
+                *out = blocks[b].0[i].into();
+            }
+            return;
+        }
+        for lane in lanes_of(self.lanes) {
+            let (b, i) = self.place(lane);
+            out[lane] = blocks[b].0[i].into();
+        }
+    }
+
+    #[inline(always)]
+    fn take_four<T: Copy + Into<u32>>(&self, blocks: &[Block4<T>], words: &mut Words) {
+        for lane in lanes_of(self.lanes) {
+            let (b, i) = self.place(lane);
+            for (out, channel) in words.iter_mut().zip(&blocks[b].0) {
+                out[lane] = channel[i].into();
+            }
+        }
+    }
+}
+
+/// The lanes of a mask, ascending.
+fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
+    core::iter::from_fn(move || {
+        let lane = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (lane < LANES).then_some(lane)
+    })
+}
+
+/// What [`super::resource::decode`] does, over lanes; depth too.
+#[inline(always)]
+pub(super) fn decode<L: Lanes>(l: L, format: Format, words: &Words) -> [F32<L>; 4] {
+    let first = U32::from_array(l, &words[0]);
+    let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+    match format {
+        Format::R8Unorm => [unorm8(first, 0), zero, zero, one],
+        Format::Rg8Unorm => [unorm8(first, 0), unorm8(first, 8), zero, one],
+        Format::Rgba8Unorm => [
+            unorm8(first, 0),
+            unorm8(first, 8),
+            unorm8(first, 16),
+            unorm8(first, 24),
+        ],
+        Format::R16Sint => [((first.to_i32() << 16) >> 16).to_f32(), zero, zero, one],
+        Format::R16Float => [half(first), zero, zero, one],
+        Format::Rgba16Float => each4(
+            #[inline(always)]
+            |i| half(U32::from_array(l, &words[i])),
+        ),
+        Format::R32Float | Format::Depth32FloatStencil8 => [first.to_f32_bits(), zero, zero, one],
+        Format::Rgba32Float => each4(
+            #[inline(always)]
+            |i| U32::from_array(l, &words[i]).to_f32_bits(),
+        ),
+        Format::R32Uint => [unsigned(first), zero, zero, one],
+        Format::Depth24Stencil8 => [first.to_i32().to_f32() / D24_MAX as f32, zero, zero, one],
+    }
+}
+
+/// 1/255 in 16 bits, and the rest: both products of a byte with them and their
+/// sum together round as the quotient does (tested for all bytes).
+const INVERSE_255: [f32; 2] = [0.003_921_628, -5.937_09e-8];
+
+#[inline(always)]
+fn unorm8<L: Lanes>(word: U32<L>, shift: u32) -> F32<L> {
+    let byte = ((word >> shift) & U32::splat(word.l, 255))
+        .to_i32()
+        .to_f32();
+    byte * INVERSE_255[0] + byte * INVERSE_255[1]
+}
+
+/// An unsigned integer to the nearest float, ties to even.
+#[inline(always)]
+fn unsigned<L: Lanes>(v: U32<L>) -> F32<L> {
+    let high = (v >> 16).to_i32().to_f32();
+    let low = (v & U32::splat(v.l, 0xffff)).to_i32().to_f32();
+    high * 65536.0 + low
+}
+
+/// A half to float, exactly; every NaN becomes 0x7fc0_0000.
+#[inline(always)]
+fn half<L: Lanes>(h: U32<L>) -> F32<L> {
+    let l = h.l;
+    let magnitude = (h & U32::splat(l, 0x7fff)) << 13;
+    let special = magnitude.ge(U32::splat(l, 0x7c00 << 13));
+    let finite = magnitude.to_f32_bits() * f32::from_bits((127 + 112) << 23);
+    let infinite = (magnitude | U32::splat(l, 0x7f80_0000)).to_f32_bits();
+    let sign = (h & U32::splat(l, 0x8000)) << 16;
+    (special.select_f32(infinite, finite).to_bits() | sign)
+        .to_f32_bits()
+        .canonical_nan()
+}
+
+/// Lane indices, each limited to an axis of `size`, and which were inside.
+#[inline(always)]
+pub(super) fn inside<L: Lanes>(i: I32<L>, size: u32) -> u16 {
+    let l = i.l;
+    (i.ge(I32::splat(l, 0)) & i.lt(I32::splat(l, size as i32))).bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::resource;
+    use super::*;
+    use crate::format;
+    use crate::simd::{SimdLevel, with_lanes};
+
+    /// Words that try each byte, half and a spread of 32-bit patterns.
+    fn patterns(format: Format) -> Vec<u32> {
+        match format.bytes() {
+            1 => (0..=255).collect(),
+            2 | 8 => (0..=0xffff).collect(),
+            3 => (0..=D24_MAX).step_by(97).collect(),
+            _ => (0..=0xffff_ffffu32)
+                .step_by(65_521)
+                .chain([u32::MAX, 0x7f80_0001, 0xffc0_0000])
+                .collect(),
+        }
+    }
+
+    fn scalar(format: Format, word: u32) -> [f32; 4] {
+        let channels = match format {
+            Format::Rg8Unorm => [word & 255, word >> 8, 0, 0],
+            Format::Rgba8Unorm => word.to_le_bytes().map(u32::from),
+            Format::Rgba16Float | Format::Rgba32Float => [word; 4],
+            Format::Depth24Stencil8 => return [format::f32_from_d24(word), 0.0, 0.0, 1.0],
+            Format::Depth32FloatStencil8 => return [f32::from_bits(word), 0.0, 0.0, 1.0],
+            _ => [word, 0, 0, 0],
+        };
+        resource::decode(format, channels).0
+    }
+
+    #[test]
+    fn lanes_decode_like_scalars() {
+        for format in Format::ALL {
+            for chunk in patterns(format).chunks(LANES) {
+                let word: [u32; LANES] = core::array::from_fn(|i| chunk[i % chunk.len()]);
+                for level in SimdLevel::available() {
+                    let got =
+                        with_lanes!(level, l => decode(l, format, &[word; 4]).map(F32::to_array));
+                    for i in 0..LANES {
+                        let want = scalar(format, word[i]).map(f32::to_bits);
+                        assert_eq!(
+                            got.map(|c| c[i].to_bits()),
+                            want,
+                            "{format:?} {:#x} {level}",
+                            word[i]
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

@@ -4,15 +4,16 @@
 //! exact steps (so that results below the normal range are rounded once more,
 //! and only once), and a rest of at most ½ (·ln 2) for a polynomial.
 
+use core::f32::consts::LOG2_E;
+
 use super::real::Real;
 
-const LOG2_E: f32 = 1.442_695;
 /// ln 2 in 16 bits, and the rest.
 pub(super) const LN_2: [f32; 2] = [0.693_145_75, 1.428_606_8e-6];
 
 /// (2^f − 1)/f, |f| ≤ ½, error of 2^f 2⁻²⁷.
 const EXP2: [f32; 6] = [
-    0.693_147_2,
+    core::f32::consts::LN_2,
     0.240_226_5,
     0.055_503_573,
     0.009_618_238,

@@ -108,7 +108,12 @@ impl Block<'_> {
 
     fn generated(&mut self) -> Vec<Fragment> {
         let clamp = self.ctx.draw.primitive.depth_clamp;
-        let reaches_far = self.tri.triangle.corners.iter().any(|c| c.vertex.position[2] > c.vertex.position[3]);
+        let reaches_far = self
+            .tri
+            .triangle
+            .corners
+            .iter()
+            .any(|c| c.vertex.position[2] > c.vertex.position[3]);
         let mut list = Vec::new();
         for (k, (x, y)) in self.pixels().into_iter().enumerate() {
             let inside = self.in_image((x, y)) && self.ctx.rect.contains(x, y);

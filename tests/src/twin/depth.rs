@@ -80,7 +80,10 @@ impl DepthPlane {
             bias: offset(bias, &plane, z, encoding),
             plane,
             range: range(viewport),
-            far: (viewport.max_depth, encoding.encode(viewport.min_depth) > encoding.encode(viewport.max_depth)),
+            far: (
+                viewport.max_depth,
+                encoding.encode(viewport.min_depth) > encoding.encode(viewport.max_depth),
+            ),
         }
     }
 

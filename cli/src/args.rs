@@ -67,13 +67,13 @@ pub(crate) struct RenderArgs {
     /// Image size in pixels [default: the scene file's, or else 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
-    /// Picture to write [default: out/<scene>-<technique>.png]
+    /// Picture to write [default: out/SCENE-TECHNIQUE.png]
     #[arg(long, value_name = "FILE.png")]
     pub(crate) out: Option<PathBuf>,
     /// Also write visibility, 1 = fully lit, as a float32 array (height, width)
     #[arg(long, value_name = "FILE.npy")]
     pub(crate) visibility: Option<PathBuf>,
-    /// Also write explaining pictures beside the render, as <out>-<OVERLAY>.png
+    /// Also write explaining pictures beside the render, as OUT-OVERLAY.png
     #[arg(long, value_name = "OVERLAY", value_enum, value_delimiter = ',')]
     pub(crate) overlay: Vec<OverlayKind>,
     /// Frames to time; the median is reported

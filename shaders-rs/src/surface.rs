@@ -6,6 +6,7 @@
 //! shaded with its normal turned round.
 
 use gnomon_raster::shader::{Fragment, FragmentShader};
+use gnomon_raster::simd::{each3, each4};
 use gnomon_raster::{F32, Lanes};
 
 use crate::vector::V3;
@@ -17,7 +18,11 @@ pub struct Constant(pub [f32; 4]);
 impl FragmentShader for Constant {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
-        f.set_color(0, self.0.map(|c| F32::splat(l, c)));
+        let color = each4(
+            #[inline(always)]
+            |c| F32::splat(l, self.0[c]),
+        );
+        f.set_color(0, color);
     }
 }
 
@@ -36,7 +41,10 @@ impl FragmentShader for Lambert {
         let (normal, position) = inputs(f);
         let to_light = position.towards(self.light);
         let cosine = cosine(normal, to_light, facing(f)).max(F32::splat(l, 0.0));
-        let [r, g, b] = self.diffuse.map(|d| cosine * d);
+        let [r, g, b] = each3(
+            #[inline(always)]
+            |c| cosine * self.diffuse[c],
+        );
         f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
     }
 }
@@ -74,8 +82,11 @@ impl FragmentShader for Phong {
         let highlight = n_l
             .gt(zero)
             .select_f32(power(mirrored, self.shininess), zero);
-        let channel = |i: usize| diffuse * self.lambert.diffuse[i] + highlight * self.specular[i];
-        f.set_color(0, [channel(0), channel(1), channel(2), zero]);
+        let [r, g, b] = each3(
+            #[inline(always)]
+            |c| diffuse * self.lambert.diffuse[c] + highlight * self.specular[c],
+        );
+        f.set_color(0, [r, g, b, zero]);
     }
 }
 
@@ -85,8 +96,8 @@ pub const MAX_SHININESS: f32 = 4096.0;
 /// Normal and world-space position.
 #[inline(always)]
 fn inputs<L: Lanes>(f: &Fragment<'_, L>) -> (V3<L>, V3<L>) {
-    let three = |first: usize| V3([f.varying(first), f.varying(first + 1), f.varying(first + 2)]);
-    (three(0), three(3))
+    let normal = V3([f.varying(0), f.varying(1), f.varying(2)]);
+    (normal, V3([f.varying(3), f.varying(4), f.varying(5)]))
 }
 
 #[inline(always)]
@@ -150,7 +161,11 @@ mod tests {
     impl FragmentShader for Powers {
         #[inline(always)]
         fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
-            f.set_color(0, self.1.map(|e| power(F32::splat(l, self.0), e)));
+            let color = each4(
+                #[inline(always)]
+                |c| power(F32::splat(l, self.0), self.1[c]),
+            );
+            f.set_color(0, color);
         }
     }
 

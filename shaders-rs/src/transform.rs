@@ -6,6 +6,7 @@
 //! light cap lies exactly on the surface that cast it.
 
 use gnomon_raster::shader::{Interpolation, Vertex, VertexShader};
+use gnomon_raster::simd::{each3, each4};
 use gnomon_raster::{F32, Lanes};
 
 /// Rows of the matrix; row r of the product is
@@ -17,8 +18,13 @@ impl ClipFromWorld {
     /// Clip-space position of 16 vertices.
     #[inline(always)]
     pub fn apply<L: Lanes>(&self, [x, y, z, w]: [F32<L>; 4]) -> [F32<L>; 4] {
-        self.0
-            .map(|m| ((x * m[0] + y * m[1]) + z * m[2]) + w * m[3])
+        each4(
+            #[inline(always)]
+            |r| {
+                let m = self.0[r];
+                ((x * m[0] + y * m[1]) + z * m[2]) + w * m[3]
+            },
+        )
     }
 }
 
@@ -41,7 +47,10 @@ pub struct HomogeneousPoints(pub ClipFromWorld);
 impl VertexShader for HomogeneousPoints {
     #[inline(always)]
     fn shade<L: Lanes>(&self, _: L, v: &mut Vertex<'_, L>) {
-        let position = [0, 1, 2, 3].map(|i| v.attribute(i));
+        let position = each4(
+            #[inline(always)]
+            |i| v.attribute(i),
+        );
         v.set_position(self.0.apply(position));
     }
 }
@@ -58,11 +67,13 @@ impl VertexShader for Surfaces {
 
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
-        let position = [0, 1, 2].map(|i| v.attribute(i));
-        for (i, p) in position.into_iter().enumerate() {
-            let normal = v.attribute(3 + i);
-            v.set_varying(i, normal);
-            v.set_varying(3 + i, p);
+        let position = each3(
+            #[inline(always)]
+            |i| v.attribute(i),
+        );
+        for i in 0..3 {
+            v.set_varying(i, v.attribute(3 + i));
+            v.set_varying(3 + i, position[i]);
         }
         let [x, y, z] = position;
         v.set_position(self.0.apply([x, y, z, F32::splat(l, 1.0)]));

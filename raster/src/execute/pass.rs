@@ -1,5 +1,7 @@
 //! One render pass: its draws in batches, each through vertices, chunks, tiles.
 
+use std::sync::{Mutex, PoisonError};
+
 use rayon::prelude::*;
 
 use super::prepare::{Prepared, Target, prepare};
@@ -10,14 +12,15 @@ use crate::geometry::{Chunk, ChunkInput, ShadedVertices, TileGrid, process_chunk
 use crate::gpu::{DrawReport, Gpu, PassReport, Recycled};
 use crate::observer::BlockAccess;
 use crate::shader::VertexBatch;
-use crate::tile::{ChunkRef, DrawWork, Recorder, Scratch, Silent, TileTarget, run_tile};
+use crate::tile::{ChunkRef, DrawWork, Scratch, TileTarget, run_tile};
 
 /// Primitives of a chunk: enough to fill packets, few enough to share out.
 const CHUNK: u32 = 1024;
 /// Vertices that one worker shades at a time.
 const VERTEX_RUN: usize = 2048;
-/// Primitives of a batch; their set-ups wait in memory until the tiles have run.
-const BATCH: u32 = 64 * CHUNK;
+/// Primitives of a batch for each thread; their set-ups wait in its cache until the
+/// tiles have run.
+const BATCH: u32 = 8 * CHUNK;
 
 /// Executes a validated pass. Accesses go to `accesses` where it is given.
 pub(super) fn execute(
@@ -28,7 +31,10 @@ pub(super) fn execute(
     let mut lent = split::lend(gpu, pass);
     let mut recycled = core::mem::take(&mut gpu.recycled);
     let pool = gpu.pool.take();
-    let run = || Executor::new(gpu, pass, &mut lent, &mut recycled).run(accesses);
+    let run = || {
+        let executor = Executor::new(gpu, pass, &lent, &mut recycled);
+        executor.run(&mut lent, accesses)
+    };
     let counters = match &pool {
         Some(pool) => pool.install(run),
         None => run(),
@@ -73,19 +79,15 @@ struct Job {
 struct Executor<'a> {
     gpu: &'a Gpu,
     pass: &'a RenderPass,
-    lent: &'a mut Lent,
+    sizes: AccessSizes,
+    grid: TileGrid,
     prepared: Vec<Prepared<'a>>,
     recycled: &'a mut Recycled,
     parallel: bool,
 }
 
 impl<'a> Executor<'a> {
-    fn new(
-        gpu: &'a Gpu,
-        pass: &'a RenderPass,
-        lent: &'a mut Lent,
-        recycled: &'a mut Recycled,
-    ) -> Self {
+    fn new(gpu: &'a Gpu, pass: &'a RenderPass, lent: &Lent, recycled: &'a mut Recycled) -> Self {
         let target = Target {
             width: lent.layout.width,
             height: lent.layout.height,
@@ -99,14 +101,23 @@ impl<'a> Executor<'a> {
         Self {
             gpu,
             pass,
-            lent,
+            sizes: lent.sizes,
+            grid: TileGrid::new(
+                lent.layout.tile_side(gpu.config.tile),
+                lent.layout.width,
+                lent.layout.height,
+            ),
             prepared,
             recycled,
             parallel: gpu.config.threads != 1,
         }
     }
 
-    fn run(mut self, accesses: Option<&mut Vec<BlockAccess>>) -> Vec<Counters> {
+    fn run(
+        mut self,
+        lent: &mut Lent,
+        mut accesses: Option<&mut Vec<BlockAccess>>,
+    ) -> Vec<Counters> {
         let units = self.units();
         let mut counters: Vec<Counters> = self
             .prepared
@@ -114,15 +125,28 @@ impl<'a> Executor<'a> {
             .enumerate()
             .map(|(i, p)| vertex_traffic(p.draw, &units, i))
             .collect();
-        let batches = batches(&units);
-        let fills = (
-            split::loads(self.pass, &self.lent.sizes),
+        let threads = if self.parallel {
+            rayon::current_num_threads() as u32
+        } else {
+            1
+        };
+        let batches = batches(&units, BATCH.saturating_mul(threads));
+        let fills = [
+            split::loads(self.pass, &self.sizes),
             split::stores(self.pass),
-        );
-        let mut recorded = accesses;
+        ];
+        let mut tiles = lent.tiles(self.gpu.config.tile);
+        let mut shaded: Vec<ShadedVertices> =
+            units.iter().map(|_| ShadedVertices::default()).collect();
+        let desks = Desks::default();
+        let mut ready = 0;
         let last = batches.len() - 1;
         for (b, jobs) in batches.iter().enumerate() {
-            let shaded = self.shade(&units, jobs);
+            let end = jobs.last().map_or(ready, |j| j.unit + 1);
+            if ready < end {
+                self.shade(&units[ready..end], &mut shaded[ready..end]);
+                ready = end;
+            }
             let chunks = self.chunks(&units, jobs, &shaded);
             for (job, chunk) in jobs.iter().zip(&chunks) {
                 let c = &mut counters[units[job.unit].draw];
@@ -131,22 +155,39 @@ impl<'a> Executor<'a> {
                     ..Counters::default()
                 });
             }
-            let before = (b == 0).then_some(&fills.0);
-            let after = (b == last).then_some(&fills.1);
-            self.tiles(
-                &units,
-                jobs,
-                &shaded,
-                &chunks,
-                before,
-                after,
-                &mut counters,
-                recorded.as_deref_mut(),
-            );
+            let stage = TileStage {
+                gpu: self.gpu,
+                grid: self.grid,
+                work: draw_work(&units, jobs, &shaded, &chunks, &self.prepared),
+                draws: self.prepared.len(),
+                sizes: self.sizes,
+                before: (b == 0).then_some(&fills[0]),
+                after: (b == last).then_some(&fills[1]),
+                parallel: self.parallel,
+                listening: accesses.is_some(),
+                desks: &desks,
+            };
+            stage.run(&mut tiles);
             self.recycled.chunks.extend(chunks);
-            self.recycled.shaded.extend(shaded);
+            // The next batch may go on with the last unit.
+            let done = if b == last {
+                end
+            } else {
+                end.saturating_sub(1)
+            };
+            for s in &mut shaded[jobs.first().map_or(end, |j| j.unit)..done] {
+                self.recycled.shaded.push(core::mem::take(s));
+            }
         }
-        if let Some(r) = recorded {
+        for desk in desks.into_all() {
+            for (c, s) in counters.iter_mut().zip(desk.scratch.counters) {
+                c.add(&s.into_counters());
+            }
+            if let Some(all) = &mut accesses {
+                all.extend(desk.accesses);
+            }
+        }
+        if let Some(r) = accesses {
             r.par_sort_unstable_by_key(|a| (a.draw, a.primitive, a.piece, a.block[1], a.block[0]));
         }
         for (c, p) in counters.iter_mut().zip(&self.prepared) {
@@ -176,36 +217,19 @@ impl<'a> Executor<'a> {
         units
     }
 
-    /// Shades the vertices of the units of `jobs`; others stay empty.
-    fn shade(&mut self, units: &[Unit<'_>], jobs: &[Job]) -> Vec<ShadedVertices> {
-        let mut old = core::mem::take(&mut self.recycled.shaded);
-        let mut shaded: Vec<ShadedVertices> = units
-            .iter()
-            .map(|_| old.pop().unwrap_or_default())
-            .collect();
-        shaded.iter_mut().for_each(ShadedVertices::clear);
-        self.recycled.shaded = old;
+    /// Shades the vertices of `units`, in recycled memory.
+    fn shade(&mut self, units: &[Unit<'_>], shaded: &mut [ShadedVertices]) {
         let mut work = Vec::new();
-        let mut rest = &mut shaded[..];
-        let mut offset = 0;
-        let mut needed: Vec<usize> = jobs.iter().map(|j| j.unit).collect();
-        needed.dedup();
-        for &u in &needed {
-            let (_, tail) = rest.split_at_mut(u - offset);
-            let (out, tail) = tail.split_first_mut().expect("the unit exists");
-            (rest, offset) = (tail, u + 1);
-            let unit = &units[u];
+        for (unit, out) in units.iter().zip(shaded) {
+            *out = self.recycled.shaded.pop().unwrap_or_default();
+            out.clear();
             out.resize(
                 unit.referenced.vertices.len(),
                 self.prepared[unit.draw].geometry.varyings,
             );
             let runs = unit.referenced.vertices.chunks(VERTEX_RUN);
-            work.extend(
-                out.parts(VERTEX_RUN)
-                    .into_iter()
-                    .zip(runs)
-                    .map(|(part, run)| (unit, part, run)),
-            );
+            let parts = out.parts(VERTEX_RUN).into_iter().zip(runs);
+            work.extend(parts.map(|(part, run)| (unit, part, run)));
         }
         let shade = |(unit, mut part, vertices): (&Unit<'_>, _, &[u32])| {
             let p = &self.prepared[unit.draw];
@@ -224,7 +248,6 @@ impl<'a> Executor<'a> {
         } else {
             work.into_iter().for_each(shade);
         }
-        shaded
     }
 
     fn chunks(
@@ -233,7 +256,6 @@ impl<'a> Executor<'a> {
         jobs: &[Job],
         shaded: &[ShadedVertices],
     ) -> Vec<Chunk> {
-        let grid = self.grid();
         let mut old = core::mem::take(&mut self.recycled.chunks);
         self.recycled.chunks = old.split_off(jobs.len().min(old.len()));
         old.resize_with(jobs.len(), Chunk::default);
@@ -245,13 +267,14 @@ impl<'a> Executor<'a> {
             let range = (job.first * per) as usize..((job.first + job.primitives) * per) as usize;
             let input = ChunkInput {
                 state: &p.geometry,
+                grid: &self.grid,
                 shaded: &shaded[job.unit],
                 indices: (!local.is_empty()).then(|| &local[range.clone()]),
                 first: range.start as u32,
                 primitives: job.primitives,
                 first_primitive: unit.first_primitive + job.first,
             };
-            process_chunk(self.gpu.config.simd, &input, &grid, old)
+            process_chunk(self.gpu.config.simd, &input, old)
         };
         if self.parallel && jobs.len() > 1 {
             jobs.par_iter().zip(old).map(one).collect()
@@ -259,51 +282,37 @@ impl<'a> Executor<'a> {
             jobs.iter().zip(old).map(one).collect()
         }
     }
+}
 
-    fn grid(&self) -> TileGrid {
-        let l = &self.lent.layout;
-        TileGrid::new(l.tile_side(self.gpu.config.tile), l.width, l.height)
+/// What a worker needs beside the tile itself; what it counts and finds.
+struct Desk {
+    scratch: Scratch,
+    accesses: Vec<BlockAccess>,
+}
+
+/// Desks of a pass. A worker takes any free one for a tile: all that they gather
+/// is sums, and lists that are sorted in the end.
+#[derive(Default)]
+struct Desks(Mutex<Vec<Desk>>);
+
+impl Desks {
+    fn take(&self, draws: usize) -> Desk {
+        let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        free.unwrap_or_else(|| Desk {
+            scratch: Scratch::new(draws),
+            accesses: Vec::new(),
+        })
     }
 
-    #[allow(clippy::too_many_arguments, reason = "what one batch consists of")]
-    fn tiles(
-        &mut self,
-        units: &[Unit<'_>],
-        jobs: &[Job],
-        shaded: &[ShadedVertices],
-        chunks: &[Chunk],
-        before: Option<&Fill>,
-        after: Option<&Fill>,
-        counters: &mut [Counters],
-        accesses: Option<&mut Vec<BlockAccess>>,
-    ) {
-        let grid = self.grid();
-        let stage = TileStage {
-            gpu: self.gpu,
-            grid,
-            work: draw_work(units, jobs, shaded, chunks, &self.prepared),
-            draws: self.prepared.len(),
-            sizes: self.lent.sizes,
-            before,
-            after,
-            parallel: self.parallel,
-        };
-        let mut tiles = self.lent.tiles(self.gpu.config.tile);
-        let scratch = match accesses {
-            None => stage.run(&mut tiles, || Silent, |_, _| Silent).0,
-            Some(all) => {
-                let (scratch, found) =
-                    stage.run(&mut tiles, Vec::new, |mut a: Vec<BlockAccess>, b| {
-                        a.extend(b);
-                        a
-                    });
-                all.extend(found);
-                scratch
-            }
-        };
-        for (c, s) in counters.iter_mut().zip(scratch.counters) {
-            c.add(&s.into_counters());
-        }
+    fn put(&self, desk: Desk) {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(desk);
+    }
+
+    fn into_all(self) -> Vec<Desk> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -317,39 +326,27 @@ struct TileStage<'a> {
     before: Option<&'a Fill>,
     after: Option<&'a Fill>,
     parallel: bool,
+    listening: bool,
+    desks: &'a Desks,
 }
 
 impl TileStage<'_> {
-    fn run<R: Recorder>(
-        &self,
-        tiles: &mut [TileTarget<'_>],
-        recorder: impl Fn() -> R + Sync + Send,
-        merge: impl Fn(R, R) -> R + Sync + Send,
-    ) -> (Scratch, R) {
-        let start = || (Scratch::new(self.draws), recorder());
-        let step = |(mut scratch, mut r): (Scratch, R), tile: &mut TileTarget<'_>| {
-            self.tile(tile, &mut scratch, &mut r);
-            (scratch, r)
-        };
-        if !self.parallel {
-            return tiles.iter_mut().fold(start(), step);
+    fn run(&self, tiles: &mut [TileTarget<'_>]) {
+        if self.parallel {
+            let tiles = tiles.par_iter_mut().with_max_len(1);
+            tiles.for_each(|tile| {
+                let mut desk = self.desks.take(self.draws);
+                self.tile(tile, &mut desk);
+                self.desks.put(desk);
+            });
+        } else {
+            let mut desk = self.desks.take(self.draws);
+            tiles.iter_mut().for_each(|tile| self.tile(tile, &mut desk));
+            self.desks.put(desk);
         }
-        tiles
-            .par_iter_mut()
-            .with_max_len(1)
-            .fold(start, step)
-            .reduce(start, |(mut a, ra), (b, rb)| {
-                a.absorb(b);
-                (a, merge(ra, rb))
-            })
     }
 
-    fn tile<R: Recorder>(
-        &self,
-        tile: &mut TileTarget<'_>,
-        scratch: &mut Scratch,
-        recorder: &mut R,
-    ) {
+    fn tile(&self, tile: &mut TileTarget<'_>, desk: &mut Desk) {
         if let Some(fill) = self.before {
             fill.apply(tile, &self.sizes);
         }
@@ -359,8 +356,8 @@ impl TileStage<'_> {
             &self.work,
             number as usize,
             tile,
-            scratch,
-            recorder,
+            &mut desk.scratch,
+            self.listening.then_some(&mut desk.accesses),
         );
         if let Some(fill) = self.after {
             fill.apply(tile, &self.sizes);
@@ -396,15 +393,15 @@ fn draw_work<'a>(
 }
 
 /// Chunks of all units, in batches; at least one batch, for the load operations.
-fn batches(units: &[Unit<'_>]) -> Vec<Vec<Job>> {
+fn batches(units: &[Unit<'_>], size: u32) -> Vec<Vec<Job>> {
     let mut batches = vec![Vec::new()];
-    let mut room = BATCH;
+    let mut room = size;
     for (u, unit) in units.iter().enumerate() {
         for first in (0..unit.primitives).step_by(CHUNK as usize) {
             let primitives = CHUNK.min(unit.primitives - first);
             if room < primitives {
                 batches.push(Vec::new());
-                room = BATCH;
+                room = size;
             }
             room -= primitives;
             batches.last_mut().expect("never empty").push(Job {

@@ -129,7 +129,7 @@ fn draw_config<'a>(
     let ends = [viewport.min_depth, viewport.max_depth].map(|v| encode_depth(encoding, v));
     let face = |f, reference| StencilFace::new(f, reference, attached);
     let shader = draw.pipeline.fragment.as_ref().map(|f| &*f.0);
-    DrawConfig {
+    let mut config = DrawConfig {
         encoding,
         rect: geometry.rect,
         attached,
@@ -146,6 +146,7 @@ fn draw_config<'a>(
         depth_range: [ends[0].min(ends[1]), ends[0].max(ends[1])],
         depth_reversed: ends[0] > ends[1],
         hiz: gpu.config.skip && depth_tested && ds.depth.bounds.is_none() && !outputs.depth,
+        lean: false,
         plain: draw.pipeline.primitive.clip_planes.is_empty() && ds.depth.bounds.is_none(),
         needs_depth: depth_tested || (attached && ds.depth.write) || shader.is_some(),
         stencil: [
@@ -169,7 +170,9 @@ fn draw_config<'a>(
                 sampler: b.sampler,
             })
             .collect(),
-    }
+    };
+    config.lean = config.is_lean();
+    config
 }
 
 fn texture(gpu: &Gpu, id: u32) -> &Texture {

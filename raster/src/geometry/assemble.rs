@@ -2,7 +2,7 @@
 
 use super::bin::{Bins, TileGrid};
 use super::clip::{self, ClipVertex};
-use super::setup::{self, Piece, Triangle};
+use super::setup::{self, Packet, Piece, Triangle};
 use super::shade::{
     BEYOND_FAR, NON_FINITE, PLANE_MASK, ScreenVertex, ShadedVertices, VIEW_MASK, W_NOT_POSITIVE,
     project_one,
@@ -10,7 +10,7 @@ use super::shade::{
 use super::{GeometryState, widen};
 use crate::MAX_VARYINGS;
 use crate::counters::PrimitiveCounters;
-use crate::simd::{LANES, SimdLevel};
+use crate::simd::SimdLevel;
 use crate::state::PrimitiveTopology;
 
 /// Set in a vertex reference: it counts into the chunk's own vertices.
@@ -22,6 +22,7 @@ const COORDINATE_LIMIT: f32 = 4_194_304.0;
 /// What a chunk is made from.
 pub(crate) struct ChunkInput<'a> {
     pub(crate) state: &'a GeometryState,
+    pub(crate) grid: &'a TileGrid,
     pub(crate) shaded: &'a ShadedVertices,
     /// Vertex positions in `shaded`, whole primitives; `None` counts up from `first`.
     pub(crate) indices: Option<&'a [u32]>,
@@ -76,21 +77,17 @@ impl Chunk {
 
 /// Assembles, clips, sets up and bins the primitives of `input`, in the memory of
 /// an old chunk.
-pub(crate) fn process_chunk(
-    level: SimdLevel,
-    input: &ChunkInput<'_>,
-    grid: &TileGrid,
-    old: Chunk,
-) -> Chunk {
+pub(crate) fn process_chunk(level: SimdLevel, input: &ChunkInput<'_>, old: Chunk) -> Chunk {
     let mut chunk = old;
     chunk.triangles.clear();
+    chunk.bins.clear();
     chunk.own.clear();
     chunk.counters = PrimitiveCounters::default();
     let mut a = Assembler {
         level,
         input,
         chunk,
-        queue: Vec::with_capacity(LANES),
+        packet: Packet::default(),
         poly: Vec::new(),
         spare: Vec::new(),
     };
@@ -103,7 +100,7 @@ pub(crate) fn process_chunk(
     }
     a.flush();
     let mut chunk = a.chunk;
-    chunk.bins.rebuild(&chunk.triangles, input.state.rect, grid);
+    chunk.bins.sort(input.grid.tiles());
     chunk
 }
 
@@ -121,8 +118,8 @@ struct Assembler<'a> {
     level: SimdLevel,
     input: &'a ChunkInput<'a>,
     chunk: Chunk,
-    /// Pieces that wait for a full packet.
-    queue: Vec<Piece>,
+    /// Waits until it is full.
+    packet: Packet,
     poly: Vec<ClipVertex>,
     spare: Vec<ClipVertex>,
 }
@@ -133,13 +130,23 @@ impl Assembler<'_> {
         let at = primitive as usize * N;
         match self.input.indices {
             Some(i) => i[at..at + N].try_into().expect("whole primitives"),
-            None => core::array::from_fn(|k| self.input.first + (at + k) as u32),
+            None => {
+                let mut v = [0; N];
+                for k in 0..N {
+                    v[k] = self.input.first + (at + k) as u32;
+                }
+                v
+            }
         }
     }
 
     #[inline(always)]
     fn codes<const N: usize>(&self, v: [u32; N]) -> [u16; N] {
-        v.map(|v| self.input.shaded.codes[v as usize])
+        let mut codes = [0; N];
+        for k in 0..N {
+            codes[k] = self.input.shaded.codes[v[k] as usize];
+        }
+        codes
     }
 
     #[inline(always)]
@@ -304,16 +311,16 @@ impl Assembler<'_> {
 
     #[inline(always)]
     fn push(&mut self, piece: Piece) {
-        self.queue.push(piece);
-        if self.queue.len() == LANES {
+        self.packet.push(piece);
+        if self.packet.is_full() {
             self.flush();
         }
     }
 
     fn flush(&mut self) {
-        if !self.queue.is_empty() {
-            setup::packet(self.level, self.input, &mut self.chunk, &self.queue);
-            self.queue.clear();
+        if !self.packet.is_empty() {
+            setup::packet(self.level, self.input, &mut self.chunk, &self.packet);
+            self.packet.clear();
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Sorting triangles into execution tiles.
 
 use super::setup::Triangle;
+use crate::simd::each3;
 
 /// The execution tiles of a render target.
 #[derive(Clone, Copy, Debug)]
@@ -46,17 +47,54 @@ impl Bins {
         &self.triangles[self.starts[t] as usize..self.starts[t + 1] as usize]
     }
 
-    /// Sorts `triangles` anew.
-    pub(super) fn rebuild(&mut self, triangles: &[Triangle], rect: [i32; 4], grid: &TileGrid) {
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
         self.pairs.clear();
-        for (i, t) in triangles.iter().enumerate() {
-            for_each_tile(t, rect, grid, |tile| self.pairs.push((tile, i as u32)));
+        self.triangles.clear();
+    }
+
+    /// Adds triangle `number` to all tiles from column and row `span[0..2]` to
+    /// `span[2..4]`.
+    #[inline(always)]
+    pub(super) fn add_all(&mut self, number: u32, span: [u32; 4], grid: &TileGrid) {
+        let [x0, y0, x1, y1] = span;
+        if x0 == x1 && y0 == y1 {
+            self.pairs.push((y0 * grid.across + x0, number));
+            return;
         }
-        self.sort(grid.tiles());
+        for y in y0..=y1 {
+            for x in x0..=x1 {
+                self.pairs.push((y * grid.across + x, number));
+            }
+        }
+    }
+
+    /// The same without the tiles that lie outside one of the triangle's edges.
+    #[inline(always)]
+    pub(super) fn add_covered(
+        &mut self,
+        number: u32,
+        t: &Triangle,
+        span: [u32; 4],
+        grid: &TileGrid,
+    ) {
+        let [x0, y0, x1, y1] = span;
+        if x0 == x1 && y0 == y1 {
+            self.pairs.push((y0 * grid.across + x0, number));
+            return;
+        }
+        let corners = TileCorners::new(t, grid);
+        for y in y0..=y1 {
+            for x in x0..=x1 {
+                if corners.may_cover(x, y) {
+                    self.pairs.push((y * grid.across + x, number));
+                }
+            }
+        }
     }
 
     /// Stable counting sort of the pairs by tile.
-    fn sort(&mut self, tiles: usize) {
+    pub(super) fn sort(&mut self, tiles: usize) {
         self.starts.clear();
         self.starts.resize(tiles + 1, 0);
         for &(tile, _) in &self.pairs {
@@ -75,42 +113,52 @@ impl Bins {
     }
 }
 
-/// Calls `f` for the tiles that the triangle may cover: those its bounds meet,
-/// without those that lie outside one of its edges.
-#[inline(always)]
-fn for_each_tile(t: &Triangle, rect: [i32; 4], grid: &TileGrid, mut f: impl FnMut(u32)) {
-    let x0 = i32::from(t.bounds[0]).max(rect[0]);
-    let y0 = i32::from(t.bounds[1]).max(rect[1]);
-    let x1 = i32::from(t.bounds[2]).min(rect[2] - 1);
-    let y1 = i32::from(t.bounds[3]).min(rect[3] - 1);
-    if x0 > x1 || y0 > y1 {
-        return;
-    }
-    let (tx0, ty0) = (x0 as u32 >> grid.shift, y0 as u32 >> grid.shift);
-    let (tx1, ty1) = (x1 as u32 >> grid.shift, y1 as u32 >> grid.shift);
-    if tx0 == tx1 && ty0 == ty1 {
-        return f(ty0 * grid.across + tx0);
-    }
-    let side = f64::from(1u32 << grid.shift);
-    let step: [(f64, f64); 3] = core::array::from_fn(|k| (f64::from(t.dx[k]), f64::from(t.dy[k])));
-    // Value of each edge at the corner of a tile where it is largest.
-    let corner: [f64; 3] = core::array::from_fn(|k| {
-        let (dx, dy) = step[k];
-        let up = if dx > 0.0 { dx * (side - 1.0) } else { 0.0 };
-        let along = if dy < 0.0 { -dy * (side - 1.0) } else { 0.0 };
-        t.c[k] + up + along
-    });
-    for ty in ty0..=ty1 {
-        let row: [f64; 3] =
-            core::array::from_fn(|k| corner[k] + step[k].0 * (f64::from(ty) * side));
-        for tx in tx0..=tx1 {
-            let x = f64::from(tx) * side;
-            let outside = (row[0] - step[0].1 * x < 0.0)
-                | (row[1] - step[1].1 * x < 0.0)
-                | (row[2] - step[2].1 * x < 0.0);
-            if !outside {
-                f(ty * grid.across + tx);
-            }
+/// A triangle's edges at the corners of tiles where they are largest.
+struct TileCorners {
+    /// At tile (0, 0).
+    c: [f64; 3],
+    /// From tile to tile, right and down.
+    right: [f64; 3],
+    down: [f64; 3],
+}
+
+impl TileCorners {
+    #[inline(always)]
+    fn new(t: &Triangle, grid: &TileGrid) -> Self {
+        let side = f64::from(1u32 << grid.shift);
+        let (dx, dy) = (t.dx.map(f64::from), t.dy.map(f64::from));
+        Self {
+            c: each3(
+                #[inline(always)]
+                |k| {
+                    let up = if dx[k] > 0.0 {
+                        dx[k] * (side - 1.0)
+                    } else {
+                        0.0
+                    };
+                    let along = if dy[k] < 0.0 {
+                        -dy[k] * (side - 1.0)
+                    } else {
+                        0.0
+                    };
+                    t.c[k] + up + along
+                },
+            ),
+            right: each3(
+                #[inline(always)]
+                |k| -dy[k] * side,
+            ),
+            down: each3(
+                #[inline(always)]
+                |k| dx[k] * side,
+            ),
         }
+    }
+
+    #[inline(always)]
+    fn may_cover(&self, x: u32, y: u32) -> bool {
+        let (x, y) = (f64::from(x), f64::from(y));
+        let negative = |k: usize| self.c[k] + self.down[k] * y + self.right[k] * x < 0.0;
+        !(negative(0) | negative(1) | negative(2))
     }
 }

@@ -1,20 +1,62 @@
 //! Triangle set-up, 16 at a time (rules §3.4–§3.6, §5).
 
+use bytemuck::{Pod, Zeroable};
+
 use super::assemble::{Chunk, ChunkInput};
 use super::{DepthEncoding, GeometryState};
-use crate::simd::{F32, F64, I32, LANES, Lanes, Mask, SimdLevel, each3, with_lanes};
+use crate::simd::{F32, F64, I32, LANES, Lanes, Mask, SimdLevel, U32, each3, outlined, with_lanes};
 use crate::state::{CullMode, FrontFace};
 
-/// A triangle on its way into set-up.
+/// Triangles on their way into set-up: one packet, filled lane by lane.
+#[derive(Debug, Default)]
+pub(crate) struct Packet {
+    v: [[u32; LANES]; 3],
+    primitive: [u32; LANES],
+    piece: [u32; LANES],
+    /// Lanes that are part of a line or point: front-facing whatever their winding.
+    widened: u16,
+    /// Lanes with a corner beyond the far plane.
+    far: u16,
+    len: usize,
+}
+
+/// One triangle of a [`Packet`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
     pub(crate) v: [u32; 3],
     pub(crate) primitive: u32,
     pub(crate) piece: u16,
-    /// Part of a line or point: front-facing whatever its winding.
     pub(crate) widened: bool,
-    /// A corner lies beyond the far plane.
     pub(crate) far: bool,
+}
+
+impl Packet {
+    #[inline(always)]
+    pub(super) fn push(&mut self, p: Piece) {
+        let i = self.len;
+        self.v[0][i] = p.v[0];
+        self.v[1][i] = p.v[1];
+        self.v[2][i] = p.v[2];
+        self.primitive[i] = p.primitive;
+        self.piece[i] = u32::from(p.piece);
+        self.widened |= u16::from(p.widened) << i;
+        self.far |= u16::from(p.far) << i;
+        self.len += 1;
+    }
+
+    #[inline(always)]
+    pub(super) fn is_full(&self) -> bool {
+        self.len == LANES
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Whatever was left in the lanes stays there: they are masked out.
+    pub(super) fn clear(&mut self) {
+        (self.len, self.widened, self.far) = (0, 0, 0);
+    }
 }
 
 /// D24 depth planes carry this many fractional bits.
@@ -25,42 +67,77 @@ pub(crate) const D24_SCALE: f64 = 16_777_215.0 * 32.0;
 pub(crate) const D24_BASE_LIMIT: f64 = 1_677_721_583.0;
 const D24_SLOPE_LIMIT: f64 = 33_554_432.0;
 
-/// A triangle ready for rasterisation.
+/// Side of the window in which small triangles carry their coverage.
+const WINDOW: i32 = 8;
+
+const FRONT: u32 = 1;
+const FAR: u32 = 2;
+const STEEP: u32 = 4;
+
+/// A triangle ready for rasterisation: two cache lines, of which the first is all
+/// that a small triangle's fixed function looks at.
 ///
-/// At pixel (i, j) edge k has the value `c[k] + dx[k]·j − dy[k]·i`; the pixel is
-/// covered where all three are ≥ 0. The eight bits below the pixel grid and the
-/// top-left rule are folded into `c`, exactly.
-#[derive(Clone, Copy, Debug)]
+/// Triangles whose bounds fit in 8×8 pixels carry their covered pixels in `mask`.
+/// Of the others `mask` is 0: at pixel (i, j) edge k has the value
+/// `c[k] + dx[k]·j − dy[k]·i`, and the pixel is covered where all three are ≥ 0.
+/// The eight bits below the pixel grid and the top-left rule are folded into `c`,
+/// exactly.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Triangle {
-    pub(crate) c: [f64; 3],
-    pub(crate) dx: [i32; 3],
-    pub(crate) dy: [i32; 3],
+    /// Bit `8·row + column`: the pixel at that distance from the first corner of
+    /// `bounds` is covered.
+    pub(crate) mask: u64,
     /// Covered pixels lie inside x0, y0, x1, y1, both ends inclusive.
     pub(crate) bounds: [i16; 4],
-    /// Depth gradients, and the bias.
+    /// Depth gradients.
     pub(crate) zx: f64,
     pub(crate) zy: f64,
-    pub(crate) bias: f64,
     /// Vertex 0: snapped position and depth.
     pub(crate) x: f32,
     pub(crate) y: f32,
     pub(crate) z: f32,
     /// Depth gradients as the block kernels use them: D24 integers or float bits.
     pub(crate) slope: [i32; 2],
-    pub(crate) v: [u32; 3],
     pub(crate) primitive: u32,
     pub(crate) piece: u16,
-    pub(crate) front: bool,
-    /// Pixels beyond the far end must be cut off.
-    pub(crate) far: bool,
-    /// D24 slopes are beyond fixed point: depth is computed in doubles.
-    pub(crate) steep: bool,
+    flags: u16,
+    pub(crate) v: [u32; 3],
+    /// Edges; meaningless where `mask` is not 0.
+    pub(crate) c: [f64; 3],
+    pub(crate) dx: [i32; 3],
+    pub(crate) dy: [i32; 3],
+    pub(crate) bias: f64,
 }
 
 const _: () = assert!(core::mem::size_of::<Triangle>() == 128);
+// Set-up writes triangles as columns of 32-bit words.
+const _: () = assert!(cfg!(target_endian = "little"));
 
 impl Triangle {
+    #[inline(always)]
+    pub(crate) fn is_front(&self) -> bool {
+        u32::from(self.flags) & FRONT != 0
+    }
+
+    /// Pixels beyond the far end must be cut off.
+    #[inline(always)]
+    pub(crate) fn is_cut_far(&self) -> bool {
+        u32::from(self.flags) & FAR != 0
+    }
+
+    /// D24 slopes are beyond fixed point: depth is computed in doubles.
+    #[inline(always)]
+    pub(crate) fn is_steep(&self) -> bool {
+        u32::from(self.flags) & STEEP != 0
+    }
+
+    /// Whether fixed function must look closer: at the far end, or in doubles.
+    #[inline(always)]
+    pub(crate) fn is_special(&self) -> bool {
+        u32::from(self.flags) & (FAR | STEEP) != 0
+    }
+
     /// Depth at the origin pixel of the block at pixel (x, y), in doubles, without bias.
     #[inline(always)]
     pub(crate) fn depth_base(&self, x: u32, y: u32) -> f64 {
@@ -70,17 +147,12 @@ impl Triangle {
     }
 }
 
-/// Sets up `pieces` (at most 16) and appends what survives to the chunk.
-pub(super) fn packet(
-    level: SimdLevel,
-    input: &ChunkInput<'_>,
-    chunk: &mut Chunk,
-    pieces: &[Piece],
-) {
-    with_lanes!(level, l => packet_lanes(l, input, chunk, pieces));
+/// Sets up the triangles of `packet` and appends what survives to the chunk.
+pub(super) fn packet(level: SimdLevel, input: &ChunkInput<'_>, chunk: &mut Chunk, packet: &Packet) {
+    with_lanes!(level, l => packet_lanes(l, input, chunk, packet));
 }
 
-/// Coordinates of 16 triangles: `xyz[vertex][component]`.
+/// Coordinates of 16 triangles: one vector a vertex.
 struct Corners<L: Lanes> {
     x: [F32<L>; 3],
     y: [F32<L>; 3],
@@ -88,11 +160,11 @@ struct Corners<L: Lanes> {
 }
 
 #[inline(always)]
-fn gather<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &Chunk, pieces: &[Piece]) -> Corners<L> {
+fn gather<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &Chunk, packet: &Packet) -> Corners<L> {
     let mut a = [[[0.0f32; LANES]; 3]; 3];
-    for (lane, p) in pieces.iter().enumerate() {
-        for (k, &v) in p.v.iter().enumerate() {
-            let s = chunk.screen(input.shaded, v);
+    for k in 0..3 {
+        for lane in 0..packet.len {
+            let s = chunk.screen(input.shaded, packet.v[k][lane]);
             a[0][k][lane] = s.x;
             a[1][k][lane] = s.y;
             a[2][k][lane] = s.z;
@@ -111,30 +183,23 @@ fn gather<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &Chunk, pieces: &[Piece
 }
 
 #[inline(always)]
-fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, pieces: &[Piece]) {
+fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, packet: &Packet) {
     let state = input.state;
-    let q = gather(l, input, chunk, pieces);
-    let present = Mask::from_bits(l, ((1u32 << pieces.len()) - 1) as u16);
-    let widened = pieces
-        .iter()
-        .enumerate()
-        .fold(0u16, |m, (i, p)| m | u16::from(p.widened) << i);
+    let q = gather(l, input, chunk, packet);
+    let present = Mask::from_bits(l, ((1u32 << packet.len) - 1) as u16);
 
     let area = doubled_area(&q);
     let zero = F64::splat(l, 0.0);
     let negative = area.lt(zero);
     let positive = zero.lt(area);
     let degenerate = present & !(negative | positive);
-    let ccw_front = state.front_face == FrontFace::Ccw;
-    let front = Mask::from_bits(
-        l,
-        if ccw_front {
-            negative.bits()
-        } else {
-            positive.bits()
-        } | widened,
-    );
-    let culled = facing_to_cull(state, front.bits()) & !widened & (present & !degenerate).bits();
+    let clockwise = if state.front_face == FrontFace::Ccw {
+        negative.bits()
+    } else {
+        positive.bits()
+    };
+    let front = clockwise | packet.widened;
+    let culled = facing_to_cull(state, front) & !packet.widened & (present & !degenerate).bits();
     let alive = present.bits() & !degenerate.bits() & !culled;
     let c = &mut chunk.counters;
     c.degenerate += u64::from(degenerate.bits().count_ones());
@@ -143,21 +208,38 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, piece
     if alive == 0 {
         return;
     }
-    let edges = Edges::new(l, &q, negative);
-    let depth = DepthPlanes::new(state, &q, chunk, alive);
-    let bounds = pixel_bounds(&q);
-    let alive = alive & !covers_nothing(l, &edges, &bounds);
-    emit(
-        chunk,
-        pieces,
-        alive,
-        front.bits(),
-        &edges,
-        &depth,
-        &bounds,
-        &q,
-        state.depth_clamp,
+    let depth = DepthPlanes::new(l, state, &q);
+    chunk.counters.steep_depth_planes += u64::from((depth.steep & alive).count_ones());
+    let bounds = Bounds::new(l, &q, state.rect);
+    let alive = alive & bounds.drawable;
+    if alive == 0 {
+        return;
+    }
+    let directed = Directed::new(l, &q, negative);
+    let small = alive & bounds.small;
+    let mask = if small != 0 {
+        outlined(
+            l,
+            #[inline(always)]
+            || window_masks(l, &q, &directed, &bounds, small),
+        )
+    } else {
+        [U32::splat(l, 0); 2]
+    };
+    let empty = (mask[0] | mask[1]).eq(U32::splat(l, 0)).bits() & small;
+    let alive = alive & !empty;
+    if alive == 0 {
+        return;
+    }
+    let c = if alive & !small != 0 {
+        edge_constants(l, &q, &directed)
+    } else {
+        [F64::splat(l, 0.0); 3]
+    };
+    let rows = rows(
+        l, packet, &q, &bounds, mask, small, front, state, &depth, &directed, &c,
     );
+    emit(chunk, input, alive, alive & small, &bounds, &rows);
 }
 
 fn facing_to_cull(state: &GeometryState, front: u16) -> u16 {
@@ -182,108 +264,149 @@ fn doubled_area<L: Lanes>(q: &Corners<L>) -> F64<L> {
     ax * by - bx * ay
 }
 
-struct Edges {
-    c: [[f64; LANES]; 3],
-    dx: [[i32; LANES]; 3],
-    dy: [[i32; LANES]; 3],
+/// Edge directions, turned so that the inside is where values are positive, and
+/// the top-left rule as what is subtracted from E·256.
+struct Directed<L: Lanes> {
+    dx: [F32<L>; 3],
+    dy: [F32<L>; 3],
+    bias: [F32<L>; 3],
 }
 
-impl Edges {
+impl<L: Lanes> Directed<L> {
     #[inline(always)]
-    fn new<L: Lanes>(l: L, q: &Corners<L>, negative: Mask<L>) -> Self {
-        let mut e = Self {
-            c: [[0.0; LANES]; 3],
-            dx: [[0; LANES]; 3],
-            dy: [[0; LANES]; 3],
-        };
+    fn new(l: L, q: &Corners<L>, negative: Mask<L>) -> Self {
         let zero = F32::splat(l, 0.0);
+        let mut e = Self {
+            dx: [zero; 3],
+            dy: [zero; 3],
+            bias: [zero; 3],
+        };
         for k in 0..3 {
-            let (a, b) = (k, (k + 1) % 3);
-            let (dx, dy) = (q.x[b] - q.x[a], q.y[b] - q.y[a]);
+            let b = (k + 1) % 3;
+            let (dx, dy) = (q.x[b] - q.x[k], q.y[b] - q.y[k]);
             let (dx, dy) = (negative.select_f32(-dx, dx), negative.select_f32(-dy, dy));
             let owns = dy.lt(zero) | (dy.eq(zero) & dx.gt(zero));
-            let bias = F64::from_f32(owns.select_f32(zero, F32::splat(l, 1.0)));
-            let half = F32::splat(l, 128.0);
-            // E·256 at pixel (0, 0); products and sums of integers below 2⁵³ are exact.
-            let at_origin = F64::from_f32(dx) * F64::from_f32(half - q.y[a])
-                - F64::from_f32(dy) * F64::from_f32(half - q.x[a]);
-            e.c[k] = ((at_origin - bias) * (1.0 / 256.0)).floor().to_array();
-            e.dx[k] = dx.to_i32().to_array();
-            e.dy[k] = dy.to_i32().to_array();
+            (e.dx[k], e.dy[k]) = (dx, dy);
+            e.bias[k] = owns.select_f32(zero, F32::splat(l, 1.0));
         }
         e
     }
 }
 
-/// Triangles whose bounds hold no pixel centre, or at most 2×2 of which none is
-/// covered: nothing downstream could see them.
+/// Edge values at pixel (0, 0).
 #[inline(always)]
-fn covers_nothing<L: Lanes>(l: L, e: &Edges, bounds: &[[i32; LANES]; 4]) -> u16 {
-    let b = [
-        I32::from_array(l, &bounds[0]),
-        I32::from_array(l, &bounds[1]),
-        I32::from_array(l, &bounds[2]),
-        I32::from_array(l, &bounds[3]),
-    ];
-    let one = I32::splat(l, 1);
-    let empty = b[0].gt(b[2]).bits() | b[1].gt(b[3]).bits();
-    let tiny = ((b[2] - b[0]).le(one) & (b[3] - b[1]).le(one)).bits();
-    if tiny == 0 {
-        return empty;
-    }
-    let (x, y) = (F64::from_f32(b[0].to_f32()), F64::from_f32(b[1].to_f32()));
-    let mut outside = [I32::splat(l, 0); 4];
-    for k in 0..3 {
-        let (dx, dy) = (I32::from_array(l, &e.dx[k]), I32::from_array(l, &e.dy[k]));
-        let at = F64::from_array(l, &e.c[k])
-            + (F64::from_f32(dx.to_f32()) * y - F64::from_f32(dy.to_f32()) * x);
-        let v = at.round_to_i32(EDGE_LIMIT);
-        outside[0] = outside[0] | v;
-        outside[1] = outside[1] | (v - dy);
-        outside[2] = outside[2] | (v + dx);
-        outside[3] = outside[3] | ((v + dx) - dy);
-    }
-    let none = outside[0] & outside[1] & outside[2] & outside[3];
-    empty | (tiny & none.lt(I32::splat(l, 0)).bits())
+fn edge_constants<L: Lanes>(l: L, q: &Corners<L>, e: &Directed<L>) -> [F64<L>; 3] {
+    let half = F32::splat(l, 128.0);
+    each3(
+        #[inline(always)]
+        |k| {
+            // E·256; products and sums of integers below 2⁵³ are exact.
+            let at_origin = F64::from_f32(e.dx[k]) * F64::from_f32(half - q.y[k])
+                - F64::from_f32(e.dy[k]) * F64::from_f32(half - q.x[k]);
+            ((at_origin - F64::from_f32(e.bias[k])) * (1.0 / 256.0)).floor()
+        },
+    )
 }
 
-/// Edge values are limited to this before they become 32-bit integers; their sign
-/// is all that matters.
-const EDGE_LIMIT: f64 = 1_073_741_824.0;
+/// Covered pixels of the 8×8 windows at the first corner of the bounds, low and
+/// high word. Only the lanes of `small` mean anything.
+#[inline(always)]
+fn window_masks<L: Lanes>(
+    l: L,
+    q: &Corners<L>,
+    e: &Directed<L>,
+    bounds: &Bounds<L>,
+    small: u16,
+) -> [U32<L>; 2] {
+    // Numbers of a small triangle are below 2²³: 32 bits hold everything.
+    let half = I32::splat(l, 128);
+    let (x, y) = (
+        (bounds.corner[0] << 8) + half,
+        (bounds.corner[1] << 8) + half,
+    );
+    let dx: [I32<L>; 3] = each3(
+        #[inline(always)]
+        |k| e.dx[k].to_i32(),
+    );
+    let dy: [I32<L>; 3] = each3(
+        #[inline(always)]
+        |k| e.dy[k].to_i32(),
+    );
+    let mut row: [I32<L>; 3] = each3(
+        #[inline(always)]
+        |k| {
+            let at = dx[k] * (y - q.y[k].to_i32()) - dy[k] * (x - q.x[k].to_i32());
+            (at - e.bias[k].to_i32()) >> 8
+        },
+    );
+    let lanes = Mask::from_bits(l, small);
+    let none = I32::splat(l, 0);
+    let across = lanes
+        .select_i32(bounds.corner[2] - bounds.corner[0], none)
+        .reduce_max();
+    let down = lanes
+        .select_i32(bounds.corner[3] - bounds.corner[1], none)
+        .reduce_max();
+    let mut outside = [U32::splat(l, u32::MAX); 2];
+    for j in 0..=down as u32 {
+        let mut v = row;
+        let mut byte = U32::splat(l, 0);
+        for i in 0..=across as u32 {
+            let sign = (v[0] | v[1] | v[2]).to_u32() >> 31;
+            byte = byte | (sign << i);
+            for k in 0..3 {
+                v[k] = v[k] - dy[k];
+            }
+        }
+        // What lies beyond the widest lane is outside.
+        byte = byte | U32::splat(l, (0xfe << across) & 0xff);
+        let word = &mut outside[j as usize / 4];
+        let shift = 8 * (j % 4);
+        *word = *word ^ ((byte ^ U32::splat(l, 0xff)) << shift);
+        for k in 0..3 {
+            row[k] = row[k] + dx[k];
+        }
+    }
+    [!outside[0], !outside[1]]
+}
 
-struct DepthPlanes {
-    zx: [f64; LANES],
-    zy: [f64; LANES],
-    bias: [f64; LANES],
-    slope: [[i32; LANES]; 2],
+struct DepthPlanes<L: Lanes> {
+    zx: F64<L>,
+    zy: F64<L>,
+    bias: F64<L>,
+    slope: [I32<L>; 2],
     steep: u16,
 }
 
-impl DepthPlanes {
+impl<L: Lanes> DepthPlanes<L> {
     #[inline(always)]
-    fn new<L: Lanes>(state: &GeometryState, q: &Corners<L>, chunk: &mut Chunk, alive: u16) -> Self {
-        let (gx, gy) = gradients(q, &q.z);
+    fn new(l: L, state: &GeometryState, q: &Corners<L>) -> Self {
+        let (zx, zy) = gradients(q, &q.z);
         let mut steep = 0;
         let slope = match state.encoding {
             DepthEncoding::D24 => {
-                let (sx, sy) = (gx * D24_SCALE, gy * D24_SCALE);
-                steep = (beyond(sx) | beyond(sy)) & alive;
-                chunk.counters.steep_depth_planes += u64::from(steep.count_ones());
+                let (sx, sy) = (zx * D24_SCALE, zy * D24_SCALE);
+                steep = beyond(sx) | beyond(sy);
                 [
-                    sx.round_to_i32(D24_SLOPE_LIMIT).to_array(),
-                    sy.round_to_i32(D24_SLOPE_LIMIT).to_array(),
+                    sx.round_to_i32(D24_SLOPE_LIMIT),
+                    sy.round_to_i32(D24_SLOPE_LIMIT),
                 ]
             }
             DepthEncoding::Float => [
-                gx.to_f32().to_bits().to_i32().to_array(),
-                gy.to_f32().to_bits().to_i32().to_array(),
+                zx.to_f32().to_bits().to_i32(),
+                zy.to_f32().to_bits().to_i32(),
             ],
         };
-        let (zx, zy) = (gx.to_array(), gy.to_array());
+        let b = state.bias;
+        let bias = if b.constant == 0.0 && b.slope == 0.0 {
+            F64::splat(l, 0.0)
+        } else {
+            F64::from_array(l, &biases(state, &zx.to_array(), &zy.to_array(), q))
+        };
         Self {
             zx,
             zy,
-            bias: biases(state, &zx, &zy, q),
+            bias,
             slope,
             steep,
         }
@@ -325,9 +448,6 @@ fn biases<L: Lanes>(
     q: &Corners<L>,
 ) -> [f64; LANES] {
     let b = state.bias;
-    if b.constant == 0.0 && b.slope == 0.0 {
-        return [0.0; LANES];
-    }
     let z = [q.z[0].to_array(), q.z[1].to_array(), q.z[2].to_array()];
     core::array::from_fn(|i| {
         let largest = z
@@ -363,73 +483,192 @@ fn float_step(v: f32) -> f64 {
     f64::from_bits(((exponent - 23 + 1023) as u64) << 52)
 }
 
-/// First and last column and row whose centres can be covered.
-#[inline(always)]
-fn pixel_bounds<L: Lanes>(q: &Corners<L>) -> [[i32; LANES]; 4] {
-    [
-        first_pixel(&q.x),
-        first_pixel(&q.y),
-        last_pixel(&q.x),
-        last_pixel(&q.y),
-    ]
+/// First and last column and row whose centres can be covered, and what follows.
+struct Bounds<L: Lanes> {
+    /// x0, y0, x1, y1, both ends inclusive.
+    corner: [I32<L>; 4],
+    /// Some pixel centre lies inside both them and the drawn rectangle.
+    drawable: u16,
+    /// They fit in a window.
+    small: u16,
+    /// The same inside the drawn rectangle.
+    drawn: [I32<L>; 4],
+}
+
+impl<L: Lanes> Bounds<L> {
+    #[inline(always)]
+    fn new(l: L, q: &Corners<L>, rect: [i32; 4]) -> Self {
+        let corner = [
+            first_pixel(&q.x),
+            first_pixel(&q.y),
+            last_pixel(&q.x),
+            last_pixel(&q.y),
+        ];
+        let drawn = [
+            corner[0].max(I32::splat(l, rect[0])),
+            corner[1].max(I32::splat(l, rect[1])),
+            corner[2].min(I32::splat(l, rect[2] - 1)),
+            corner[3].min(I32::splat(l, rect[3] - 1)),
+        ];
+        let side = I32::splat(l, WINDOW);
+        let small = (corner[2] - corner[0]).lt(side) & (corner[3] - corner[1]).lt(side);
+        let drawable = drawn[0].le(drawn[2]) & drawn[1].le(drawn[3]);
+        Self {
+            corner,
+            drawable: drawable.bits(),
+            small: small.bits(),
+            drawn,
+        }
+    }
 }
 
 #[inline(always)]
-fn first_pixel<L: Lanes>(v: &[F32<L>; 3]) -> [i32; LANES] {
+fn first_pixel<L: Lanes>(v: &[F32<L>; 3]) -> I32<L> {
     let low = v[0].min(v[1]).min(v[2]).to_i32();
-    ((low + I32::splat(v[0].l, 127)) >> 8).to_array()
+    (low + I32::splat(v[0].l, 127)) >> 8
 }
 
 #[inline(always)]
-fn last_pixel<L: Lanes>(v: &[F32<L>; 3]) -> [i32; LANES] {
+fn last_pixel<L: Lanes>(v: &[F32<L>; 3]) -> I32<L> {
     let high = v[0].max(v[1]).max(v[2]).to_i32();
-    ((high - I32::splat(v[0].l, 128)) >> 8).to_array()
+    (high - I32::splat(v[0].l, 128)) >> 8
 }
 
+/// The 16 triangles, in memory.
 #[inline(always)]
 #[allow(
     clippy::too_many_arguments,
     reason = "the columns of one table; splitting it would only hide that"
 )]
+fn rows<L: Lanes>(
+    l: L,
+    packet: &Packet,
+    q: &Corners<L>,
+    bounds: &Bounds<L>,
+    mask: [U32<L>; 2],
+    small: u16,
+    front: u16,
+    state: &GeometryState,
+    d: &DepthPlanes<L>,
+    e: &Directed<L>,
+    c: &[F64<L>; 3],
+) -> [[[u32; LANES]; LANES]; 2] {
+    let zero = U32::splat(l, 0);
+    let small = Mask::from_bits(l, small);
+    let far = if state.depth_clamp { 0 } else { packet.far };
+    let flags = flag(l, front, FRONT) | flag(l, far, FAR) | flag(l, d.steep, STEEP);
+    let (zx, zy, bias) = (d.zx.words(), d.zy.words(), d.bias.words());
+    let (c0, c1, c2) = (c[0].words(), c[1].words(), c[2].words());
+    let hot = [
+        small.select_u32(mask[0], zero),
+        small.select_u32(mask[1], zero),
+        halves(bounds.corner[0], bounds.corner[1]),
+        halves(bounds.corner[2], bounds.corner[3]),
+        zx.0,
+        zx.1,
+        zy.0,
+        zy.1,
+        q.x[0].to_bits(),
+        q.y[0].to_bits(),
+        q.z[0].to_bits(),
+        d.slope[0].to_u32(),
+        d.slope[1].to_u32(),
+        U32::from_array(l, &packet.primitive),
+        U32::from_array(l, &packet.piece) | flags,
+        U32::from_array(l, &packet.v[0]),
+    ];
+    let cold = [
+        U32::from_array(l, &packet.v[1]),
+        U32::from_array(l, &packet.v[2]),
+        c0.0,
+        c0.1,
+        c1.0,
+        c1.1,
+        c2.0,
+        c2.1,
+        e.dx[0].to_i32().to_u32(),
+        e.dx[1].to_i32().to_u32(),
+        e.dx[2].to_i32().to_u32(),
+        e.dy[0].to_i32().to_u32(),
+        e.dy[1].to_i32().to_u32(),
+        e.dy[2].to_i32().to_u32(),
+        bias.0,
+        bias.1,
+    ];
+    let mut rows = [[[0; LANES]; LANES]; 2];
+    for (half, columns) in rows.iter_mut().zip([hot, cold]) {
+        outlined(
+            l,
+            #[inline(always)]
+            || transpose(&columns, half),
+        );
+    }
+    rows
+}
+
+/// `flag` in the lanes of `bits`, in the upper half of the word.
+#[inline(always)]
+fn flag<L: Lanes>(l: L, bits: u16, flag: u32) -> U32<L> {
+    Mask::from_bits(l, bits).select_u32(U32::splat(l, flag << 16), U32::splat(l, 0))
+}
+
+/// Two 16-bit numbers in a word, the first in the lower half.
+#[inline(always)]
+fn halves<L: Lanes>(a: I32<L>, b: I32<L>) -> U32<L> {
+    (a.to_u32() & U32::splat(a.l, 0xffff)) | (b.to_u32() << 16)
+}
+
+/// Makes row `i` lane `i` of every column.
+#[inline(always)]
+fn transpose<L: Lanes>(columns: &[U32<L>; LANES], rows: &mut [[u32; LANES]; LANES]) {
+    let mut v = *columns;
+    for _ in 0..LANES.ilog2() {
+        // A perfect shuffle of the 256 words; four of them transpose.
+        let mut w = v;
+        for i in 0..LANES / 2 {
+            (w[2 * i], w[2 * i + 1]) = v[i].interleave(v[i + LANES / 2]);
+        }
+        v = w;
+    }
+    for i in 0..LANES {
+        v[i].store(&mut rows[i]);
+    }
+}
+
+/// Appends the triangles of `alive` to the chunk and its bins.
+#[inline(always)]
 fn emit<L: Lanes>(
     chunk: &mut Chunk,
-    pieces: &[Piece],
+    input: &ChunkInput<'_>,
     alive: u16,
-    front: u16,
-    e: &Edges,
-    d: &DepthPlanes,
-    bounds: &[[i32; LANES]; 4],
-    q: &Corners<L>,
-    depth_clamp: bool,
+    small: u16,
+    bounds: &Bounds<L>,
+    rows: &[[[u32; LANES]; LANES]; 2],
 ) {
-    let (x, y, z) = (q.x[0].to_array(), q.y[0].to_array(), q.z[0].to_array());
+    let shift = input.grid.shift;
+    let tile = [
+        (bounds.drawn[0] >> shift).to_array(),
+        (bounds.drawn[1] >> shift).to_array(),
+        (bounds.drawn[2] >> shift).to_array(),
+        (bounds.drawn[3] >> shift).to_array(),
+    ];
     let mut left = alive;
     while left != 0 {
         let i = left.trailing_zeros() as usize;
         left &= left - 1;
-        chunk.triangles.push(Triangle {
-            c: [e.c[0][i], e.c[1][i], e.c[2][i]],
-            dx: [e.dx[0][i], e.dx[1][i], e.dx[2][i]],
-            dy: [e.dy[0][i], e.dy[1][i], e.dy[2][i]],
-            bounds: [
-                bounds[0][i] as i16,
-                bounds[1][i] as i16,
-                bounds[2][i] as i16,
-                bounds[3][i] as i16,
-            ],
-            zx: d.zx[i],
-            zy: d.zy[i],
-            bias: d.bias[i],
-            x: x[i],
-            y: y[i],
-            z: z[i],
-            slope: [d.slope[0][i], d.slope[1][i]],
-            v: pieces[i].v,
-            primitive: pieces[i].primitive,
-            piece: pieces[i].piece,
-            front: front >> i & 1 != 0,
-            far: pieces[i].far && !depth_clamp,
-            steep: d.steep >> i & 1 != 0,
-        });
+        let t: Triangle = bytemuck::cast([rows[0][i], rows[1][i]]);
+        let number = chunk.triangles.len() as u32;
+        let span = [
+            tile[0][i] as u32,
+            tile[1][i] as u32,
+            tile[2][i] as u32,
+            tile[3][i] as u32,
+        ];
+        if small >> i & 1 != 0 {
+            chunk.bins.add_all(number, span, input.grid);
+        } else {
+            chunk.bins.add_covered(number, &t, span, input.grid);
+        }
+        chunk.triangles.push(t);
     }
 }

@@ -3,10 +3,10 @@
 use core::ops::{Add, Div, Mul, Sub};
 
 use fearless_simd::{
-    Bytes as _, Simd, SimdBase as _, SimdFloat as _, SimdMask as _, f64x8, i32x16, i64x8,
+    Bytes as _, Simd, SimdBase as _, SimdFloat as _, SimdMask as _, f64x8, i32x16, i64x8, u32x16,
 };
 
-use super::{F32, I32, LANES, Lanes, Mask};
+use super::{F32, I32, LANES, Lanes, Mask, U32};
 
 /// Added to a double below 2⁵¹ it leaves the nearest integer, ties to even, in
 /// the low bits of the mantissa.
@@ -60,6 +60,14 @@ impl<L: Lanes> F64<L> {
         self.lo.store_slice(&mut a[..8]);
         self.hi.store_slice(&mut a[8..]);
         a
+    }
+
+    /// Low and high words of each lane's bits.
+    #[inline(always)]
+    pub(crate) fn words(self) -> (U32<L>, U32<L>) {
+        let (lo, hi): (u32x16<L::Isa>, u32x16<L::Isa>) = (self.lo.bitcast(), self.hi.bitcast());
+        let (even, odd) = lo.deinterleave(hi);
+        (U32::new(self.l, even), U32::new(self.l, odd))
     }
 
     #[inline(always)]

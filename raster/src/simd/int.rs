@@ -190,6 +190,13 @@ impl<L: Lanes> U32<L> {
         I32::new(self.l, self.v.bitcast())
     }
 
+    /// `(a0, b0, a1, b1, …, b7)` and `(a8, b8, …, b15)`.
+    #[inline(always)]
+    pub(crate) fn interleave(self, o: Self) -> (Self, Self) {
+        let (a, b) = self.v.interleave(o.v);
+        (Self::new(self.l, a), Self::new(self.l, b))
+    }
+
     /// The float with these bits.
     #[inline(always)]
     pub fn to_f32_bits(self) -> F32<L> {

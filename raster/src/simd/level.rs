@@ -101,22 +101,25 @@ impl SimdLevel {
 ///
 /// The token is matched here and not by `fearless_simd::dispatch!`, which
 /// forwards a lower level to a higher baseline: a forced level must be what runs.
+/// `--cfg gnomon_widest` leaves the other levels out, for quick builds while one
+/// profiles; the machine must have AVX-512 or NEON then.
 macro_rules! with_lanes {
     ($level:expr, $lanes:ident => $op:expr) => {{
         use fearless_simd::Simd as _;
         match $level.level() {
+            #[cfg(any(gnomon_s, not(gnomon_widest)))]
             fearless_simd::Level::Fallback($lanes) => $op,
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(gnomon_widest)))]
             fearless_simd::Level::Sse2($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,
             ),
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(gnomon_widest)))]
             fearless_simd::Level::Avx2($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,
             ),
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(gnomon_s)))]
             fearless_simd::Level::Avx512($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,

@@ -32,7 +32,7 @@ pub const LANES: usize = 16;
 
 /// An instruction set to compute on, as a zero-sized proof that the CPU has it.
 ///
-/// Every [`fearless_simd::Simd`] token is one. The indirection leaves room for
+/// The [`fearless_simd::Simd`] tokens of the supported levels are ones. The indirection leaves room for
 /// *precision modes*: a wrapper whose [`Lanes::round`] rounds every arithmetic
 /// result to fp24 or fp16, as the target GPUs did, is one more instantiation.
 pub trait Lanes: Copy + Send + Sync + 'static {
@@ -41,6 +41,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
 
     /// The proof token of the instruction set.
     fn isa(self) -> Self::Isa;
+
+    /// Runs `f` in a function of its own, compiled for the level.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn apart<T>(self, f: impl FnOnce() -> T) -> T {
+        self.isa().vectorize(f)
+    }
 
     /// What every float operation's result passes through; the identity for
     /// full precision.
@@ -68,14 +75,43 @@ pub fn each4<T>(mut f: impl FnMut(usize) -> T) -> [T; 4] {
 /// inlining from multiplying the code.
 #[inline(always)]
 pub(crate) fn outlined<L: Lanes, T>(l: L, f: impl FnOnce() -> T) -> T {
-    l.isa().vectorize(f)
+    l.apart(f)
 }
 
-impl<S: Simd> Lanes for S {
-    type Isa = S;
+/// A level that the compiler would otherwise inline into functions of 100,000 lines:
+/// the scalar one has no instruction set to keep its calls apart.
+impl Lanes for fearless_simd::Fallback {
+    type Isa = Self;
 
     #[inline(always)]
-    fn isa(self) -> S {
+    fn isa(self) -> Self {
         self
     }
+
+    #[inline(always)]
+    fn apart<T>(self, f: impl FnOnce() -> T) -> T {
+        #[inline(never)]
+        fn call<T>(f: impl FnOnce() -> T) -> T {
+            f()
+        }
+        call(f)
+    }
+}
+
+macro_rules! isa {
+    ($($arch:literal: $($level:ident)*;)*) => {$($(
+        #[cfg(target_arch = $arch)]
+        impl Lanes for fearless_simd::$level {
+            type Isa = Self;
+
+            #[inline(always)]
+            fn isa(self) -> Self {
+                self
+            }
+        }
+    )*)*};
+}
+isa! {
+    "x86_64": Sse2 Avx2 Avx512;
+    "aarch64": Neon;
 }

@@ -5,7 +5,7 @@ use super::config::{DrawConfig, StencilFace};
 use super::depth::{self, Decision, Decisions, DepthBlock, GroupDepth};
 use super::shade::VaryingCache;
 use super::target::{DepthTile, TileTarget};
-use super::{COUNT, ChunkRef, Recorder, TileStageCounters, output, shade, stencil};
+use super::{COUNT, ChunkRef, TileStageCounters, output, shade, stencil};
 use crate::geometry::Triangle;
 use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput};
@@ -23,6 +23,8 @@ pub(super) struct Env<'a, 't> {
     pub(super) counters: &'a mut TileStageCounters,
     pub(super) outputs: &'a mut [PacketOutput; PACKETS],
     pub(super) varyings: &'a mut VaryingCache,
+    /// Where block accesses go, if somebody listens.
+    pub(super) accesses: Option<&'a mut Vec<BlockAccess>>,
 }
 
 /// One block of a tile.
@@ -42,7 +44,7 @@ pub(super) enum Depths<const D24: bool> {
 }
 
 #[inline(always)]
-fn count(counter: &mut u64, mask: u64) {
+pub(super) fn count(counter: &mut u64, mask: u64) {
     if COUNT {
         *counter += u64::from(mask.count_ones());
     }
@@ -182,54 +184,61 @@ pub(super) fn run_group<L: Lanes>(
     done | pass | fail
 }
 
-/// Runs the pixels of `covered` of one block; `decision` is what a group's
-/// zmin/zmax have said, if they were asked.
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "one triangle in one block")]
-pub(super) fn run<L: Lanes, R: Recorder, const D24: bool>(
-    l: L,
-    env: &mut Env<'_, '_>,
-    recorder: &mut R,
-    t: &Triangle,
-    place: Place,
-    plane: DepthBlock<D24>,
-    decision: Option<Decision>,
-    covered: u64,
-) {
-    outlined(
-        l,
-        #[inline(always)]
-        || run_covered::<L, R, D24>(l, env, recorder, t, place, plane, decision, covered),
+/// What is done with the covered pixels of a block.
+pub(super) trait BlockStage {
+    /// [`run_group`] may take whole blocks away.
+    const WHOLE_GROUPS: bool;
+
+    /// Runs the pixels of `covered` of one block; `decision` is what a group's
+    /// zmin/zmax have said, if they were asked.
+    fn run<L: Lanes, const D24: bool>(
+        l: L,
+        env: &mut Env<'_, '_>,
+        t: &Triangle,
+        place: Place,
+        plane: &DepthBlock<D24>,
+        decision: Option<Decision>,
+        covered: u64,
     );
 }
 
+/// Any state, with or without an observer.
+pub(super) struct General;
+
+impl BlockStage for General {
+    const WHOLE_GROUPS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes, const D24: bool>(
+        l: L,
+        env: &mut Env<'_, '_>,
+        t: &Triangle,
+        place: Place,
+        plane: &DepthBlock<D24>,
+        decision: Option<Decision>,
+        covered: u64,
+    ) {
+        outlined(
+            l,
+            #[inline(always)]
+            || run_covered::<L, D24>(l, env, t, place, plane, decision, covered),
+        );
+    }
+}
+
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "one triangle in one block")]
-fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
+fn run_covered<L: Lanes, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
-    recorder: &mut R,
     t: &Triangle,
     place: Place,
-    plane: DepthBlock<D24>,
+    plane: &DepthBlock<D24>,
     decision: Option<Decision>,
     covered: u64,
 ) {
     let config = env.config;
-    let face = if t.front {
-        &config.stencil[0]
-    } else {
-        &config.stencil[1]
-    };
-    if !R::ON && config.plain && !t.far && config.shader.is_none() && config.attached {
-        return outlined(
-            l,
-            #[inline(always)]
-            || count_or_write(l, env, face, place, &plane, decision, covered),
-        );
-    }
     let mut mask = covered;
-    if !config.plain || t.far {
+    if !config.plain || t.is_cut_far() {
         mask &= outlined(
             l,
             #[inline(always)]
@@ -237,10 +246,8 @@ fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
         );
     }
     if mask != 0 {
-        let access = fragments(l, env, t, face, place, plane, decision, mask, R::ON);
-        if R::ON {
-            record(env, recorder, t, place, access);
-        }
+        let access = fragments(l, env, t, config.face(t), place, plane, decision, mask);
+        record(env, t, place, access);
     }
 }
 
@@ -248,7 +255,7 @@ fn run_covered<L: Lanes, R: Recorder, const D24: bool>(
 #[inline(always)]
 fn visible<L: Lanes, const D24: bool>(l: L, env: &Env<'_, '_>, t: &Triangle, place: Place) -> u64 {
     let c = env.config;
-    let near = if t.far {
+    let near = if t.is_cut_far() {
         DepthBlock::<D24>::not_beyond_far(l, t, place.x, place.y, c.depth_range, c.depth_reversed)
     } else {
         u64::MAX
@@ -256,92 +263,9 @@ fn visible<L: Lanes, const D24: bool>(l: L, env: &Env<'_, '_>, t: &Triangle, pla
     near & shade::inside_clip_planes(l, env, t, place)
 }
 
-/// A block of a draw that only tests depth, counts stencil and writes depth:
-/// shadow volumes and depth passes.
-#[inline(always)]
-fn count_or_write<L: Lanes, const D24: bool>(
-    l: L,
-    env: &mut Env<'_, '_>,
-    face: &StencilFace,
-    place: Place,
-    plane: &DepthBlock<D24>,
-    decision: Option<Decision>,
-    mask: u64,
-) {
-    count(&mut env.counters.fragments.generated, mask);
-    let Some(decision) = consult(l, env, face, place, plane, decision, mask) else {
-        return;
-    };
-    let passed = match face.counts {
-        Some(steps) => counting_tests(l, env, place, plane, decision, steps, mask),
-        None => {
-            let depths = Depths::Plane(*plane);
-            tests::<L, D24>(
-                l,
-                env,
-                place,
-                face,
-                &depths,
-                decision,
-                mask,
-                &mut BlockAccess::default(),
-            )
-        }
-    };
-    count(&mut env.counters.fragments.written, passed);
-}
-
-/// Tests of a face whose stencil stage at most adds `steps` on depth failure and
-/// pass; gives what passes.
-#[inline(always)]
-fn counting_tests<L: Lanes, const D24: bool>(
-    l: L,
-    env: &mut Env<'_, '_>,
-    place: Place,
-    plane: &DepthBlock<D24>,
-    decision: Decision,
-    steps: [i8; 2],
-    mask: u64,
-) -> u64 {
-    let config = env.config;
-    let c = &mut *env.counters;
-    let d = env.target.depth.as_mut().expect("attached");
-    let passed = match (config.compare, decision) {
-        (CompareFunction::Always, _) | (_, Decision::Pass) => mask,
-        (CompareFunction::Never, _) | (_, Decision::Fail) => 0,
-        _ => {
-            count(&mut c.accesses.z_read, mask);
-            compare_plane(l, config.compare, plane, &d.depth[place.index], mask) & mask
-        }
-    };
-    count(&mut c.fragments.depth_failed, mask & !passed);
-    for (m, step) in [(mask & !passed, steps[0]), (passed, steps[1])] {
-        if step != 0 && m != 0 {
-            count(&mut c.accesses.stencil_read, m);
-            count(&mut c.accesses.stencil_write, m);
-            stencil::add(l, &mut d.stencil[place.index], m, step);
-        }
-    }
-    if config.depth_write && passed != 0 {
-        let inside = env.target.inside(place.x, place.y);
-        let d = env.target.depth.as_mut().expect("attached");
-        write_depth(
-            l,
-            config,
-            env.counters,
-            d,
-            place.index,
-            &Depths::Plane(*plane),
-            inside,
-            passed,
-        );
-    }
-    passed
-}
-
 /// Asks zmin/zmax where the draw uses them; `None` where the block is thrown away.
 #[inline(always)]
-fn consult<L: Lanes, const D24: bool>(
+pub(super) fn consult<L: Lanes, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
     face: &StencilFace,
@@ -383,10 +307,9 @@ fn fragments<L: Lanes, const D24: bool>(
     t: &Triangle,
     face: &StencilFace,
     place: Place,
-    plane: DepthBlock<D24>,
+    plane: &DepthBlock<D24>,
     decision: Option<Decision>,
     mask: u64,
-    observed: bool,
 ) -> BlockAccess {
     let config = env.config;
     let mut access = BlockAccess {
@@ -395,26 +318,19 @@ fn fragments<L: Lanes, const D24: bool>(
         ..BlockAccess::default()
     };
     count(&mut env.counters.fragments.generated, mask);
-    let Some(decision) = consult(l, env, face, place, &plane, decision, mask) else {
+    let Some(decision) = consult(l, env, face, place, plane, decision, mask) else {
         return access;
     };
     let late = config.is_late(face);
     let mut alive = mask;
-    let mut depths = Depths::Plane(plane);
+    let mut depths = Depths::Plane(*plane);
     if late {
-        alive = shaded::<L, D24>(l, env, t, place, &plane, alive);
+        alive = shaded::<L, D24>(l, env, t, place, plane, alive);
         if config.writes_shader_depth {
             depths = Depths::Shader(shade::shader_depths::<D24>(env, alive));
         }
     }
-    if config.attached
-        && !observed
-        && config.bounds.is_none()
-        && !late
-        && let Some(steps) = face.counts
-    {
-        alive = counting_tests(l, env, place, &plane, decision, steps, alive);
-    } else if config.attached {
+    if config.attached {
         alive = outlined(
             l,
             #[inline(always)]
@@ -422,18 +338,26 @@ fn fragments<L: Lanes, const D24: bool>(
         );
     }
     if !late && config.shader.is_some() {
-        alive = shaded::<L, D24>(l, env, t, place, &plane, alive);
+        alive = shaded::<L, D24>(l, env, t, place, plane, alive);
     }
     count(&mut env.counters.fragments.written, alive);
     if alive != 0 && config.shader.is_some() {
-        output::write(l, env, place, alive, &mut access);
+        output::write(l, env, place, alive);
+        color_access(config, alive, &mut access);
     }
     access
 }
 
+fn color_access(config: &DrawConfig<'_>, live: u64, access: &mut BlockAccess) {
+    for (i, target) in config.targets.iter().enumerate() {
+        access.color_write[i] = if target.mask.0 != 0 { live } else { 0 };
+        access.color_read[i] = if target.reads { live } else { 0 };
+    }
+}
+
 /// Runs the shader on `alive`; gives what it did not discard.
 #[inline(always)]
-fn shaded<L: Lanes, const D24: bool>(
+pub(super) fn shaded<L: Lanes, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
     t: &Triangle,
@@ -568,7 +492,7 @@ fn write_depth<L: Lanes, const D24: bool>(
 }
 
 #[inline(always)]
-fn packets(mut f: impl FnMut(usize) -> u16) -> u64 {
+pub(super) fn packets(mut f: impl FnMut(usize) -> u16) -> u64 {
     u64::from(f(0)) | u64::from(f(1)) << 16 | u64::from(f(2)) << 32 | u64::from(f(3)) << 48
 }
 
@@ -712,19 +636,15 @@ fn update_stencil<L: Lanes>(
     access.stencil_read = read;
 }
 
-#[inline(always)]
-fn record<R: Recorder>(
-    env: &Env<'_, '_>,
-    recorder: &mut R,
-    t: &Triangle,
-    place: Place,
-    access: BlockAccess,
-) {
-    recorder.record(BlockAccess {
-        draw: env.draw,
-        primitive: t.primitive,
-        piece: u32::from(t.piece),
-        block: [(place.x / 8) as u16, (place.y / 8) as u16],
-        ..access
-    });
+fn record(env: &mut Env<'_, '_>, t: &Triangle, place: Place, access: BlockAccess) {
+    let draw = env.draw;
+    if let Some(all) = &mut env.accesses {
+        all.push(BlockAccess {
+            draw,
+            primitive: t.primitive,
+            piece: u32::from(t.piece),
+            block: [(place.x / 8) as u16, (place.y / 8) as u16],
+            ..access
+        });
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::command::BoundTexture;
 use crate::format::Format;
-use crate::geometry::DepthEncoding;
+use crate::geometry::{DepthEncoding, Triangle};
 use crate::shader::ErasedFragmentShader;
 use crate::state::{BlendState, ColorWrites, CompareFunction, StencilFaceState, StencilOperation};
 
@@ -35,6 +35,11 @@ impl StencilFace {
             effective,
             counts,
         }
+    }
+
+    /// Whether the stage does no more than test, or no more than count.
+    pub(crate) fn is_lean(&self) -> bool {
+        self.counts.is_some() || !self.effective.contains(&true)
     }
 
     /// Whether something can happen to fragments that fail the depth test.
@@ -109,6 +114,9 @@ pub(crate) struct DrawConfig<'a> {
     pub(crate) hiz: bool,
     /// No clip planes and no depth bounds.
     pub(crate) plain: bool,
+    /// Plain, tests do not wait for the shader, and the stencil only tests or only
+    /// counts: the kernel of `lean` applies.
+    pub(crate) lean: bool,
     /// Fragment depth is looked at by anything.
     pub(crate) needs_depth: bool,
     /// Front, back.
@@ -127,6 +135,22 @@ pub(crate) struct DrawConfig<'a> {
 }
 
 impl DrawConfig<'_> {
+    /// Whether [`Self::lean`] should be set.
+    pub(crate) fn is_lean(&self) -> bool {
+        let face = |f| !self.is_late(f) && f.is_lean();
+        self.plain && self.stencil.iter().all(face)
+    }
+
+    /// Stencil state of the side that the triangle shows.
+    #[inline(always)]
+    pub(crate) fn face(&self, t: &Triangle) -> &StencilFace {
+        if t.is_front() {
+            &self.stencil[0]
+        } else {
+            &self.stencil[1]
+        }
+    }
+
     /// Tests wait for the shader (rules §7).
     #[inline(always)]
     pub(crate) fn is_late(&self, face: &StencilFace) -> bool {

@@ -4,13 +4,14 @@
 //! that are neighbours in memory (Morton order), so that zmin/zmax of a group are
 //! two vector loads. Blocks that are thrown away, or whose depth test is decided
 //! and whose only effect is one stencil operation, never leave the group's loop.
-//! Small triangles go straight to their few blocks.
+//! Small triangles bring their pixels with them.
 
-use super::Recorder;
-use super::block::{self, Env, Place};
+use super::block::{self, BlockStage, Env, General, Place};
 use super::depth::{Decision, Decisions, DepthBlock, GroupDepth};
 use super::target::rect_mask;
+
 use crate::geometry::Triangle;
+use crate::shader::PACKETS;
 use crate::simd::{I32, LANES, Lanes, each3, outlined, round_to_i32};
 use crate::texture::layout::morton;
 
@@ -27,23 +28,55 @@ const EDGE_LIMIT: f64 = (1u32 << 30) as f64;
 
 /// Rasterises the triangles of one bin in order.
 #[inline(always)]
-pub(super) fn bin<L: Lanes, R: Recorder, const D24: bool>(
+pub(super) fn bin<L: Lanes, S: BlockStage, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
-    recorder: &mut R,
     bin: &[u32],
 ) {
-    outlined(
-        l,
-        #[inline(always)]
-        || {
-            for &i in bin {
-                let t = &env.chunk.chunk.triangles[i as usize];
-                env.varyings.forget();
-                triangle::<L, R, D24>(l, env, recorder, t);
+    let w = Window::new(env);
+    let side = (env.target.side >> 3) as i32;
+    let (tx, ty) = (env.target.x as i32, env.target.y as i32);
+    for &i in bin {
+        let t = &env.chunk.chunk.triangles[i as usize];
+        env.varyings.forget();
+        if t.mask == 0 {
+            outlined(
+                l,
+                #[inline(always)]
+                || large::<L, S, D24>(l, env, &w, t),
+            );
+            continue;
+        }
+        let (x, y) = (i32::from(t.bounds[0]) - tx, i32::from(t.bounds[1]) - ty);
+        let (bx, by) = (x >> 3, y >> 3);
+        let quarters = split_window(t.mask, x as u32 & 7, y as u32 & 7);
+        for (k, &m) in quarters.iter().enumerate() {
+            let (bx, by) = (bx + (k as i32 & 1), by + (k as i32 >> 1));
+            // A window may hang over the tile's edges.
+            let m = if m != 0 && (bx as u32) < side as u32 && (by as u32) < side as u32 {
+                m & w.mask(bx, by)
+            } else {
+                0
+            };
+            if m != 0 {
+                one_block::<L, S, D24>(l, env, t, [bx, by], m);
             }
-        },
-    );
+        }
+    }
+}
+
+/// Cuts an 8×8 window that starts `x` columns and `y` rows inside a block into
+/// that block's pixels, its right neighbour's, and those of the two below.
+#[inline(always)]
+fn split_window(mask: u64, x: u32, y: u32) -> [u64; 4] {
+    const COLUMNS: u64 = 0x0101_0101_0101_0101;
+    // Columns that stay in the left blocks.
+    let stay = COLUMNS * (0xff >> x);
+    let left = (mask & stay) << x;
+    // Shifted in two steps: by 8 − x and 64 − 8y, which may be the whole width.
+    let right = ((mask & !stay) >> 1) >> (7 - x);
+    let below = |m: u64| (m >> 1) >> (63 - 8 * y);
+    [left << (8 * y), right << (8 * y), below(left), below(right)]
 }
 
 /// The triangle's edges as the tile sees them.
@@ -87,15 +120,15 @@ impl TileEdges {
         (a.min(0) + b.min(0), a.max(0) + b.max(0))
     }
 
-    /// Pixels of packets `first..=last` of block (bx, by) inside all three edges.
+    /// Pixels of block (bx, by) inside all three edges.
     #[inline(always)]
-    fn mask<L: Lanes>(&self, l: L, bx: i32, by: i32, first: usize, last: usize) -> u64 {
+    fn mask<L: Lanes>(&self, l: L, bx: i32, by: i32) -> u64 {
         let (ix, iy) = (I32::from_array(l, &IX), I32::from_array(l, &IY));
         let mut e: [I32<L>; 3] = each3(
             #[inline(always)]
             |k| {
                 (iy * I32::splat(l, self.dx[k]) - ix * I32::splat(l, self.dy[k]))
-                    + I32::splat(l, self.at_block(k, bx, by) + 2 * first as i32 * self.dx[k])
+                    + I32::splat(l, self.at_block(k, bx, by))
             },
         );
         let step: [I32<L>; 3] = each3(
@@ -104,7 +137,7 @@ impl TileEdges {
         );
         let zero = I32::splat(l, 0);
         let mut m = 0;
-        for p in first..=last {
+        for p in 0..PACKETS {
             let inside = (e[0] | e[1] | e[2]).ge(zero);
             m |= u64::from(inside.bits()) << (16 * p);
             for k in 0..3 {
@@ -124,6 +157,19 @@ struct Window {
 }
 
 impl Window {
+    #[inline(always)]
+    fn new(env: &Env<'_, '_>) -> Self {
+        let (tx, ty) = (env.target.x as i32, env.target.y as i32);
+        let last = env.target.side as i32 - 1;
+        let r = &env.config.rect;
+        Self {
+            x0: (r[0] - tx).max(0),
+            y0: (r[1] - ty).max(0),
+            x1: (r[2] - 1 - tx).min(last),
+            y1: (r[3] - 1 - ty).min(last),
+        }
+    }
+
     /// Pixels of block (bx, by) that lie in the window.
     #[inline(always)]
     fn mask(&self, bx: i32, by: i32) -> u64 {
@@ -140,30 +186,20 @@ impl Window {
     }
 }
 
+/// A triangle that does not fit in a window.
 #[inline(always)]
-fn triangle<L: Lanes, R: Recorder, const D24: bool>(
+fn large<L: Lanes, S: BlockStage, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
-    recorder: &mut R,
+    w: &Window,
     t: &Triangle,
 ) {
-    let (tx, ty, side) = (
-        env.target.x as i32,
-        env.target.y as i32,
-        env.target.side as i32,
-    );
-    let r = &env.config.rect;
-    let w = Window {
-        x0: (r[0] - tx).max(0),
-        y0: (r[1] - ty).max(0),
-        x1: (r[2] - 1 - tx).min(side - 1),
-        y1: (r[3] - 1 - ty).min(side - 1),
-    };
+    let (tx, ty) = (env.target.x as i32, env.target.y as i32);
     let [b0, b1, b2, b3] = [
-        t.bounds[0] as i32,
-        t.bounds[1] as i32,
-        t.bounds[2] as i32,
-        t.bounds[3] as i32,
+        i32::from(t.bounds[0]),
+        i32::from(t.bounds[1]),
+        i32::from(t.bounds[2]),
+        i32::from(t.bounds[3]),
     ];
     let (x0, y0) = ((b0 - tx).max(w.x0), (b1 - ty).max(w.y0));
     let (x1, y1) = ((b2 - tx).min(w.x1), (b3 - ty).min(w.y1));
@@ -171,35 +207,28 @@ fn triangle<L: Lanes, R: Recorder, const D24: bool>(
         return;
     }
     let e = TileEdges::new(t, env.target.x, env.target.y);
-    let blocks = [x0 >> 3, y0 >> 3, x1 >> 3, y1 >> 3];
-    let [bx0, by0, bx1, by1] = blocks;
-    if t.steep || ((bx1 - bx0) * (by1 - by0) <= 1 && (bx1 - bx0) + (by1 - by0) <= 2) {
-        // Few blocks: their masks are as cheap as asking whether they matter. Steep
-        // triangles are slivers, and groups know fixed-point depth only.
+    let [bx0, by0, bx1, by1] = [x0 >> 3, y0 >> 3, x1 >> 3, y1 >> 3];
+    if t.is_steep() {
+        // Groups know fixed-point depth only.
         for by in by0..=by1 {
-            // Packets that the triangle's rows touch.
-            let first = ((y0 - 8 * by).max(0) >> 1) as usize;
-            let last = ((y1 - 8 * by).min(7) >> 1) as usize;
             for bx in bx0..=bx1 {
-                let m = e.mask(l, bx, by, first, last) & w.mask(bx, by);
+                let m = e.mask(l, bx, by) & w.mask(bx, by);
                 if m != 0 {
-                    one_block::<L, R, D24>(l, env, recorder, t, [bx, by], m);
+                    outlined(
+                        l,
+                        #[inline(always)]
+                        || one_block::<L, General, D24>(l, env, t, [bx, by], m),
+                    );
                 }
             }
         }
         return;
     }
-    outlined(
-        l,
-        #[inline(always)]
-        || {
-            for gy in (by0 & !3..=by1).step_by(4) {
-                for gx in (bx0 & !3..=bx1).step_by(4) {
-                    group::<L, R, D24>(l, env, recorder, t, &e, &w, blocks, [gx, gy]);
-                }
-            }
-        },
-    );
+    for gy in (by0 & !3..=by1).step_by(4) {
+        for gx in (bx0 & !3..=bx1).step_by(4) {
+            group::<L, S, D24>(l, env, t, &e, w, [bx0, by0, bx1, by1], [gx, gy]);
+        }
+    }
 }
 
 #[inline(always)]
@@ -212,10 +241,9 @@ fn place(env: &Env<'_, '_>, bx: i32, by: i32) -> Place {
 }
 
 #[inline(always)]
-fn one_block<L: Lanes, R: Recorder, const D24: bool>(
+fn one_block<L: Lanes, S: BlockStage, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
-    recorder: &mut R,
     t: &Triangle,
     [bx, by]: [i32; 2],
     mask: u64,
@@ -226,7 +254,7 @@ fn one_block<L: Lanes, R: Recorder, const D24: bool>(
     } else {
         DepthBlock::UNUSED
     };
-    block::run::<L, R, D24>(l, env, recorder, t, p, plane, None, mask);
+    S::run::<L, D24>(l, env, t, p, &plane, None, mask);
 }
 
 /// Classifies and runs the 4×4 blocks at (gx, gy).
@@ -235,10 +263,9 @@ fn one_block<L: Lanes, R: Recorder, const D24: bool>(
     clippy::too_many_arguments,
     reason = "the state of one triangle in one tile"
 )]
-fn group<L: Lanes, R: Recorder, const D24: bool>(
+fn group<L: Lanes, S: BlockStage, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
-    recorder: &mut R,
     t: &Triangle,
     e: &TileEdges,
     w: &Window,
@@ -282,14 +309,9 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
     {
         decided = block::ask_group(l, env, first, alive, d);
     }
-    let face = if t.front {
-        &env.config.stencil[0]
-    } else {
-        &env.config.stencil[1]
-    };
     let mut left = alive;
-    if !R::ON && env.config.plain && !t.far {
-        left &= !block::run_group(l, env, face, first, full, &decided);
+    if S::WHOLE_GROUPS && !t.is_cut_far() {
+        left &= !block::run_group(l, env, env.config.face(t), first, full, &decided);
     }
     let bases = depth.map(
         #[inline(always)]
@@ -302,7 +324,12 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
         let m = if full >> i & 1 != 0 {
             u64::MAX
         } else {
-            e.mask(l, bx, by, 0, 3) & w.mask(bx, by)
+            let inside = outlined(
+                l,
+                #[inline(always)]
+                || e.mask(l, bx, by),
+            );
+            inside & w.mask(bx, by)
         };
         if m == 0 {
             continue;
@@ -315,6 +342,6 @@ fn group<L: Lanes, R: Recorder, const D24: bool>(
             #[inline(always)]
             || decided.of(i),
         );
-        block::run::<L, R, D24>(l, env, recorder, t, place(env, bx, by), plane, decision, m);
+        S::run::<L, D24>(l, env, t, place(env, bx, by), &plane, decision, m);
     }
 }

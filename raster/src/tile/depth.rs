@@ -87,7 +87,7 @@ impl<const D24: bool> DepthBlock<D24> {
 
     #[inline(always)]
     fn at_depth(t: &Triangle, base: f64, range: [i32; 2]) -> Self {
-        let steep = (D24 && t.steep).then_some([base, t.zx, t.zy]);
+        let steep = (D24 && t.is_steep()).then_some([base, t.zx, t.zy]);
         let base = if D24 {
             let b = base * D24_SCALE;
             let b = if b < D24_BASE_LIMIT {

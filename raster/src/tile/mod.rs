@@ -3,17 +3,22 @@
 //! A tile's worker walks the draws, their chunks and the triangles binned to the
 //! tile in submission order. `coverage` finds the 8×8 blocks that a triangle
 //! touches and their 64-bit masks; `block` runs the fixed function of
-//! `docs/rasterisation-rules.md` §7 on a mask, with `depth` and `stencil`;
+//! `docs/rasterisation-rules.md` §7 on a mask, with `depth` and `stencil`, and
+//! `lean` does the same for the states that most draws have;
 //! `shade` calls the fragment shader on what is left; `output` blends.
 
 mod block;
 mod config;
 mod coverage;
 mod depth;
+mod lean;
 mod output;
 mod shade;
 mod stencil;
 mod target;
+
+use block::{BlockStage, General};
+use lean::Lean;
 
 pub(crate) use config::{DrawConfig, StencilFace, TargetConfig};
 pub(crate) use depth::ShaderDepth;
@@ -23,32 +28,11 @@ use crate::counters::{Accesses, Counters, EventCounters, FragmentCounters, TileC
 use crate::geometry::{Chunk, DepthEncoding, ShadedVertices};
 use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput, ShaderEvents};
-use crate::simd::{Lanes, SimdLevel, with_lanes};
+use crate::simd::{Lanes, SimdLevel, outlined, with_lanes};
 
 /// Whether counting is compiled in; the `uncounted` feature exists to measure
 /// what it costs.
 pub(crate) const COUNT: bool = !cfg!(feature = "uncounted");
-
-/// Receives block accesses; [`Silent`] costs nothing.
-pub(crate) trait Recorder: Send {
-    const ON: bool;
-    fn record(&mut self, access: BlockAccess);
-}
-
-/// Nobody listens.
-pub(crate) struct Silent;
-
-impl Recorder for Silent {
-    const ON: bool = false;
-    fn record(&mut self, _: BlockAccess) {}
-}
-
-impl Recorder for Vec<BlockAccess> {
-    const ON: bool = true;
-    fn record(&mut self, access: BlockAccess) {
-        self.push(access);
-    }
-}
 
 /// Counters of the tile stage for one draw.
 #[derive(Clone, Debug, Default)]
@@ -62,27 +46,6 @@ pub(crate) struct TileStageCounters {
 }
 
 impl TileStageCounters {
-    /// Adds another worker's.
-    fn add(&mut self, o: &Self) {
-        let mut a = std::mem::take(self).into_counters();
-        a.add(&o.clone().into_counters());
-        *self = Self::from_counters(&a);
-    }
-
-    fn from_counters(c: &Counters) -> Self {
-        Self {
-            fragments: c.fragments,
-            invocations: c.fragment_shader_invocations,
-            tiles: c.tiles,
-            events: c.events,
-            accesses: c.accesses,
-            shader: ShaderEvents {
-                fetches: c.accesses.tex_fetch,
-                texels: c.accesses.tex_texel,
-            },
-        }
-    }
-
     /// As the counters of a draw, to be added to the geometry stage's.
     pub(crate) fn into_counters(self) -> Counters {
         let mut accesses = self.accesses;
@@ -130,36 +93,14 @@ impl Scratch {
     }
 }
 
-impl Scratch {
-    /// Adds what another worker counted.
-    pub(crate) fn absorb(&mut self, o: Self) {
-        for (a, b) in self.counters.iter_mut().zip(o.counters) {
-            a.add(&b);
-        }
-    }
-}
-
-/// Runs all of `work` on one tile.
-pub(crate) fn run_tile<R: Recorder>(
+/// Runs all of `work` on one tile. Accesses go to `accesses` where it is given.
+pub(crate) fn run_tile(
     level: SimdLevel,
     work: &[DrawWork<'_>],
     tile_number: usize,
     target: &mut TileTarget<'_>,
     scratch: &mut Scratch,
-    recorder: &mut R,
-) {
-    with_lanes!(level, l => run_tile_lanes(l, level, work, tile_number, target, scratch, recorder));
-}
-
-#[inline(always)]
-fn run_tile_lanes<L: Lanes, R: Recorder>(
-    l: L,
-    level: SimdLevel,
-    work: &[DrawWork<'_>],
-    tile_number: usize,
-    target: &mut TileTarget<'_>,
-    scratch: &mut Scratch,
-    recorder: &mut R,
+    mut accesses: Option<&mut Vec<BlockAccess>>,
 ) {
     for w in work {
         for chunk in &w.chunks {
@@ -176,11 +117,37 @@ fn run_tile_lanes<L: Lanes, R: Recorder>(
                 counters: &mut scratch.counters[w.draw],
                 outputs: &mut scratch.outputs,
                 varyings: &mut scratch.varyings,
+                accesses: accesses.as_deref_mut(),
             };
-            match w.config.encoding {
-                DepthEncoding::D24 => coverage::bin::<L, R, true>(l, &mut env, recorder, bin),
-                DepthEncoding::Float => coverage::bin::<L, R, false>(l, &mut env, recorder, bin),
-            }
+            with_lanes!(level, l => run_bin(l, &mut env, bin));
         }
     }
+}
+
+/// Chooses the kernel for the draw: what it is compiled for is known in it.
+#[inline(always)]
+fn run_bin<L: Lanes>(l: L, env: &mut block::Env<'_, '_>, bin: &[u32]) {
+    let config = env.config;
+    let lean = config.lean && env.accesses.is_none();
+    match (lean, config.encoding, config.shader.is_some()) {
+        (true, DepthEncoding::D24, false) => kernel::<L, Lean<false>, true>(l, env, bin),
+        (true, DepthEncoding::D24, true) => kernel::<L, Lean<true>, true>(l, env, bin),
+        (true, DepthEncoding::Float, false) => kernel::<L, Lean<false>, false>(l, env, bin),
+        (true, DepthEncoding::Float, true) => kernel::<L, Lean<true>, false>(l, env, bin),
+        (false, DepthEncoding::D24, _) => kernel::<L, General, true>(l, env, bin),
+        (false, DepthEncoding::Float, _) => kernel::<L, General, false>(l, env, bin),
+    }
+}
+
+#[inline(always)]
+fn kernel<L: Lanes, S: BlockStage, const D24: bool>(
+    l: L,
+    env: &mut block::Env<'_, '_>,
+    bin: &[u32],
+) {
+    outlined(
+        l,
+        #[inline(always)]
+        || coverage::bin::<L, S, D24>(l, env, bin),
+    );
 }

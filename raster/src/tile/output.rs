@@ -7,20 +7,13 @@ use super::config::TargetConfig;
 use super::target::ColorTile;
 use super::{COUNT, TileStageCounters};
 use crate::format::{self, Format};
-use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput};
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32, each4, outlined};
 use crate::state::{BlendComponent, BlendFactor, BlendOperation, BlendState, ColorWrites};
 
 /// Writes the outputs of the fragments of `live` to every colour target.
 #[inline(always)]
-pub(super) fn write<L: Lanes>(
-    l: L,
-    env: &mut Env<'_, '_>,
-    place: Place,
-    live: u64,
-    access: &mut BlockAccess,
-) {
+pub(super) fn write<L: Lanes>(l: L, env: &mut Env<'_, '_>, place: Place, live: u64) {
     for (i, target) in env.config.targets.iter().enumerate() {
         if target.mask.0 == 0 {
             continue;
@@ -31,8 +24,6 @@ pub(super) fn write<L: Lanes>(
             a.color_write[i] += n;
             a.color_read[i] += if target.reads { n } else { 0 };
         }
-        access.color_write[i] = live;
-        access.color_read[i] = if target.reads { live } else { 0 };
         let mut w = Writer {
             l,
             target,

@@ -202,7 +202,7 @@ pub(super) fn run<L: Lanes, const D24: bool>(
         planes: &env.varyings.planes,
         varyings: env.config.varyings,
         depth: plane.for_shader(),
-        front_facing: t.front,
+        front_facing: t.is_front(),
         primitive: t.primitive,
         textures: &env.config.textures,
         out: env.outputs,

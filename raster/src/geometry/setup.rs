@@ -188,7 +188,11 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, packe
     let q = gather(l, input, chunk, packet);
     let present = Mask::from_bits(l, ((1u32 << packet.len) - 1) as u16);
 
-    let area = doubled_area(&q);
+    let area = outlined(
+        l,
+        #[inline(always)]
+        || doubled_area(&q),
+    );
     let zero = F64::splat(l, 0.0);
     let negative = area.lt(zero);
     let positive = zero.lt(area);
@@ -208,14 +212,26 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, packe
     if alive == 0 {
         return;
     }
-    let depth = DepthPlanes::new(l, state, &q);
+    let depth = outlined(
+        l,
+        #[inline(always)]
+        || DepthPlanes::new(l, state, &q),
+    );
     chunk.counters.steep_depth_planes += u64::from((depth.steep & alive).count_ones());
-    let bounds = Bounds::new(l, &q, state.rect);
+    let bounds = outlined(
+        l,
+        #[inline(always)]
+        || Bounds::new(l, &q, state.rect),
+    );
     let alive = alive & bounds.drawable;
     if alive == 0 {
         return;
     }
-    let directed = Directed::new(l, &q, negative);
+    let directed = outlined(
+        l,
+        #[inline(always)]
+        || Directed::new(l, &q, negative),
+    );
     let small = alive & bounds.small;
     let mask = if small != 0 {
         outlined(
@@ -232,12 +248,22 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, packe
         return;
     }
     let c = if alive & !small != 0 {
-        edge_constants(l, &q, &directed)
+        outlined(
+            l,
+            #[inline(always)]
+            || edge_constants(l, &q, &directed),
+        )
     } else {
         [F64::splat(l, 0.0); 3]
     };
-    let rows = rows(
-        l, packet, &q, &bounds, mask, small, front, state, &depth, &directed, &c,
+    let rows = outlined(
+        l,
+        #[inline(always)]
+        || {
+            rows(
+                l, packet, &q, &bounds, mask, small, front, state, &depth, &directed, &c,
+            )
+        },
     );
     emit(chunk, input, alive, alive & small, &bounds, &rows);
 }

@@ -52,6 +52,9 @@ impl SimdLevel {
     /// Every level that this machine has, narrowest first.
     #[must_use]
     pub fn available() -> Vec<Self> {
+        if cfg!(gnomon_widest) {
+            return vec![Self::detect()];
+        }
         let best = Self::detect().level;
         let mut levels = vec![Self::scalar()];
         #[cfg(target_arch = "x86_64")]
@@ -107,7 +110,7 @@ macro_rules! with_lanes {
     ($level:expr, $lanes:ident => $op:expr) => {{
         use fearless_simd::Simd as _;
         match $level.level() {
-            #[cfg(any(gnomon_s, not(gnomon_widest)))]
+            #[cfg(not(gnomon_widest))]
             fearless_simd::Level::Fallback($lanes) => $op,
             #[cfg(all(target_arch = "x86_64", not(gnomon_widest)))]
             fearless_simd::Level::Sse2($lanes) => $lanes.vectorize(
@@ -119,7 +122,7 @@ macro_rules! with_lanes {
                 #[inline(always)]
                 || $op,
             ),
-            #[cfg(all(target_arch = "x86_64", not(gnomon_s)))]
+            #[cfg(target_arch = "x86_64")]
             fearless_simd::Level::Avx512($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,

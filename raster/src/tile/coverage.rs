@@ -178,10 +178,10 @@ impl Window {
             return u64::MAX;
         }
         rect_mask(
-            (self.x0 - x).max(0) as u32,
-            (self.y0 - y).max(0) as u32,
-            (self.x1 + 1 - x).min(8) as u32,
-            (self.y1 + 1 - y).min(8) as u32,
+            (self.x0 - x).clamp(0, 8) as u32,
+            (self.y0 - y).clamp(0, 8) as u32,
+            (self.x1 + 1 - x).clamp(0, 8) as u32,
+            (self.y1 + 1 - y).clamp(0, 8) as u32,
         )
     }
 }

@@ -8,7 +8,9 @@ use super::target::ColorTile;
 use super::{COUNT, TileStageCounters};
 use crate::format::{self, Format};
 use crate::shader::{PACKETS, PacketOutput};
-use crate::simd::{F32, I32, LANES, Lanes, Mask, U32, each4, outlined};
+use crate::simd::{
+    F32, I32, LANES, Lanes, Mask, U32, each4, float_from_half, half_from_float, outlined,
+};
 use crate::state::{BlendComponent, BlendFactor, BlendOperation, BlendState, ColorWrites};
 
 /// Writes the outputs of the fragments of `live` to every colour target.
@@ -199,17 +201,36 @@ impl<L: Lanes> Writer<'_, L> {
         )
     }
 
+    /// The same four in a word, red in the low byte.
+    #[inline(always)]
+    fn packed_bytes(&mut self, src: &Channels<F32<L>>, live: u16) -> U32<L> {
+        if !F32::all_in_unit(src).bits() & live != 0 {
+            return pack(&self.bytes(src, live));
+        }
+        // Rounded as in `bytes`. The bits above the byte are those of 2²³: shifts
+        // throw them out, but for red's.
+        let [r, g, b, a] = each4(
+            #[inline(always)]
+            |c| (src[c] * 255.0 + 8_388_608.0).to_bits(),
+        );
+        let red = r ^ U32::splat(self.l, 8_388_608f32.to_bits());
+        (red | g << 8) | (b << 16 | a << 24)
+    }
+
     #[inline(always)]
     fn rgba8(&mut self, words: &mut [u32; LANES], src: &Channels<F32<L>>, live: u16) {
         let l = self.l;
+        if self.target.mask == ColorWrites::ALL {
+            let plain = self.target.blend.as_ref().map(plain_operation);
+            if plain != Some(None) {
+                let s = self.packed_bytes(src, live);
+                return match plain.flatten() {
+                    Some(op) => self.rgba8_plain(words, s, op, live),
+                    None => self.store32(words, s, live),
+                };
+            }
+        }
         let s = self.bytes(src, live);
-        let writes_all = self.target.mask == ColorWrites::ALL;
-        if writes_all && self.target.blend.is_none() {
-            return self.store32(words, pack(&s), live);
-        }
-        if writes_all && let Some(op) = self.target.blend.as_ref().and_then(plain_operation) {
-            return self.rgba8_plain(words, pack(&s), op, live);
-        }
         let old = U32::from_array(l, words);
         let d: Channels<I32<L>> = each4(
             #[inline(always)]
@@ -422,7 +443,7 @@ impl<L: Lanes> Writer<'_, L> {
         let d: Channels<F32<L>> = each4(
             #[inline(always)]
             |c| match half {
-                true => F32::from_array(l, &old[c].map(|r| format::f32_from_f16(r as u16))),
+                true => float_from_half(U32::from_array(l, &old[c])),
                 false => U32::from_array(l, &old[c]).to_f32_bits(),
             },
         );
@@ -444,12 +465,11 @@ impl<L: Lanes> Writer<'_, L> {
             let nan = v.ne(v).bits() & live;
             self.c.events.nan_canonicalised += u64::from(nan.count_ones());
             let v = v.canonical_nan();
-            let raw = if half {
-                v.to_array().map(|x| u32::from(format::f16_from_f32(x)))
+            let new = if half {
+                half_from_float(v)
             } else {
-                v.to_bits().to_array()
+                v.to_bits()
             };
-            let new = U32::from_array(l, &raw);
             let was = U32::from_array(l, &old[c]);
             same &= new.eq(was).bits();
             store_channel(

@@ -51,6 +51,7 @@ pub mod error;
 pub mod heat;
 pub mod light;
 pub mod mesh;
+pub mod metrics;
 pub mod obj;
 pub mod oracle;
 pub mod render;

@@ -56,19 +56,24 @@ impl Banding {
         let mut levels = Vec::new();
         for i in 0..width * height {
             steps.extend((i % width + 1 < width).then(|| step(i, i + 1)).flatten());
-            steps.extend((i / width + 1 < height).then(|| step(i, i + width)).flatten());
+            steps.extend(
+                (i / width + 1 < height)
+                    .then(|| step(i, i + width))
+                    .flatten(),
+            );
             levels.extend(penumbra(i).then(|| (picture[i] + 0.0).to_bits()));
         }
         levels.sort_unstable();
         levels.dedup();
-        let summary = super::visibility::ErrorSummary::of(&steps);
-        Ok(summary.map_or_else(Self::default, |s| Self {
-            pairs: s.pixels,
-            mean: s.mean,
-            p99: s.p99,
-            max: s.max,
+        let mut banding = Self {
             levels: levels.len(),
-        }))
+            ..Self::default()
+        };
+        if let Some(summary) = super::visibility::ErrorSummary::of(&steps) {
+            banding.pairs = summary.pixels;
+            (banding.mean, banding.p99, banding.max) = (summary.mean, summary.p99, summary.max);
+        }
+        Ok(banding)
     }
 }
 

@@ -6,15 +6,19 @@
 //! compare shaded 8-bit sRGB pictures, as they are seen. Acceptance thresholds
 //! belong on visibility; the others are for reports.
 //!
-//! Everything is f64, summed in pixel order by one thread.
+//! Everything is f64; rows may be filtered in parallel, but sums are taken in pixel
+//! order by one thread.
 
 pub mod banding;
 mod error;
+mod filter;
 pub mod flip;
 mod picture;
 pub mod psnr;
+#[cfg(test)]
+mod samples;
 pub mod ssim;
 pub mod visibility;
 
 pub use error::MetricError;
-pub use picture::Picture;
+pub use picture::{Picture, rgb_of};

@@ -34,3 +34,8 @@ impl<'a> Picture<'a> {
         self.rgb.as_chunks::<3>().0.iter().copied()
     }
 }
+
+/// R, G, B of each pixel, without alpha.
+pub fn rgb_of(rgba: &[[u8; 4]]) -> Vec<u8> {
+    rgba.iter().flat_map(|p| [p[0], p[1], p[2]]).collect()
+}

@@ -45,6 +45,9 @@ mod tests {
         let error = psnr(a, b).unwrap_err().to_string();
         assert!(error.contains("2x2 and 4x1"), "{error}");
         let error = Picture::new([3, 2], &rgb).unwrap_err().to_string();
-        assert!(error.contains("12 values") && error.contains("18"), "{error}");
+        assert!(
+            error.contains("12 values") && error.contains("18"),
+            "{error}"
+        );
     }
 }

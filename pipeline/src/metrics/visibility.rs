@@ -135,16 +135,41 @@ mod tests {
     #[test]
     fn errors_are_split_by_region_of_the_truth() {
         let nan = f64::NAN;
-        let image = truth(vec![0.0, 0.0, 0.5, 0.25, 1.0, 1.0 - 1e-12, nan, nan, 0.7, 1.0]);
+        let image = truth(vec![
+            0.0,
+            0.0,
+            0.5,
+            0.25,
+            1.0,
+            1.0 - 1e-12,
+            nan,
+            nan,
+            0.7,
+            1.0,
+        ]);
         let hole = f32::NAN;
-        let picture = [0.5, 0.0, 0.25, 0.75, 1.0, 1.0, hole, 0.3, hole, f32::INFINITY];
+        let picture = [
+            0.5,
+            0.0,
+            0.25,
+            0.75,
+            1.0,
+            1.0,
+            hole,
+            0.3,
+            hole,
+            f32::INFINITY,
+        ];
         let error = VisibilityError::measure(&image, [10, 1], &picture).unwrap();
         let of = |r| error.of_region(r).unwrap();
         let umbra = of(LightRegion::Umbra);
         assert_eq!((umbra.pixels, umbra.max, umbra.mean), (2, 0.5, 0.25));
         assert_eq!(umbra.rmse, 0.125f64.sqrt());
         let penumbra = of(LightRegion::Penumbra);
-        assert_eq!((penumbra.pixels, penumbra.max, penumbra.mean), (2, 0.5, 0.125));
+        assert_eq!(
+            (penumbra.pixels, penumbra.max, penumbra.mean),
+            (2, 0.5, 0.125)
+        );
         assert!(of(LightRegion::Lit).max < 1e-9);
         assert_eq!(error.all.unwrap().pixels, 6);
         let expected = MaskCounts {
@@ -160,7 +185,10 @@ mod tests {
     fn percentiles_are_by_nearest_rank() {
         let ramp: Vec<f64> = (1..=200).map(|k| -f64::from(k)).collect();
         let summary = ErrorSummary::of(&ramp).unwrap();
-        assert_eq!((summary.p99, summary.max, summary.mean), (198.0, 200.0, -100.5));
+        assert_eq!(
+            (summary.p99, summary.max, summary.mean),
+            (198.0, 200.0, -100.5)
+        );
         assert_eq!(ErrorSummary::of(&[0.25]).unwrap().p99, 0.25);
         assert_eq!(ErrorSummary::of(&[]), None);
     }

@@ -3,10 +3,11 @@
 //! Nothing here knows of silhouettes, volumes or rasterisation: [`hard`] casts
 //! rays through a [`bvh`]; [`area`] integrates soft shadows exactly and
 //! [`sampled`] does so by rays, for a second opinion; [`plates`] is a closed
-//! form.
+//! form. [`cache`] keeps what was computed.
 
 pub mod area;
 pub mod bvh;
+pub mod cache;
 pub mod hard;
 pub mod plates;
 pub mod sampled;

@@ -57,6 +57,10 @@ mod tests;
 
 pub use image::{LightRegion, VisibilityImage};
 
+/// Raised with every change of the values that this module finds, so that images
+/// kept by [`super::cache`] are not taken for its own.
+pub const ORACLE_VERSION: u32 = 1;
+
 /// Visibility within this of 0 or 1 counts as umbra or lit.
 pub const CLASS_TOLERANCE: f64 = 1e-9;
 

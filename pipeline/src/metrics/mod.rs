@@ -6,6 +6,28 @@
 //! compare shaded 8-bit sRGB pictures, as they are seen. Acceptance thresholds
 //! belong on visibility; the others are for reports.
 //!
+//! Hard shadows, measured against the exact shadow of the area light: right in
+//! umbra and light, up to half the light wrong in between.
+//!
+//! ```
+//! use gnomon_pipeline::metrics::visibility::VisibilityError;
+//! use gnomon_pipeline::oracle::area::{LightRegion, VisibilityImage};
+//! use gnomon_pipeline::render::{self, RenderSettings};
+//! use gnomon_pipeline::{scene::builtin, technique};
+//!
+//! let scene = builtin::build("cylinder")?;
+//! let truth = VisibilityImage::of_scene(&scene, 0, [64, 48], &|| {})?;
+//! let shadows = technique::find("shadow-volumes")?;
+//! let params = technique::Params::parse(shadows, ["method=zfail"])?;
+//! let settings = RenderSettings { size: [64, 48], ..RenderSettings::default() };
+//! let picture = render::render(&scene, shadows, &params, &settings)?;
+//! let error = VisibilityError::measure(&truth, picture.size, &picture.visibility)?;
+//! let rmse = |region| error.of_region(region).unwrap().rmse;
+//! assert!(rmse(LightRegion::Umbra) < 0.1 && rmse(LightRegion::Lit) < 0.1);
+//! assert!(rmse(LightRegion::Penumbra) > 0.2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Everything is f64; rows may be filtered in parallel, but sums are taken in pixel
 //! order by one thread.
 

@@ -229,8 +229,11 @@ mod tests {
     /// Seeds of independent estimates, of `SIDE * SIDE` rays each.
     const SEEDS: [u64; 4] = [17, 18, 19, 20];
 
-    /// Exact share and four estimates of every receiver of a small image.
-    fn pairs(scene: &Scene, exact: &LightShape, sampled: &LightShape) -> Vec<(f64, [Estimate; 4])> {
+    /// Exact share and four estimates of a receiver.
+    type Pair = (f64, [Estimate; 4]);
+
+    /// Exact shares and estimates of a small image.
+    fn pairs(scene: &Scene, exact: &LightShape, sampled: &LightShape) -> Vec<Pair> {
         let (width, height) = (48u32, 32u32);
         let surfaces = Surfaces::new(scene);
         let oracle = AreaOracle::new(&surfaces, exact).unwrap();
@@ -261,15 +264,13 @@ mod tests {
 
     impl Distance {
         /// `worst` and `mean` exceed 1 with a probability of at most `risk`.
-        fn of(pairs: &[(f64, [Estimate; 4])], risk: f64) -> Self {
+        fn of(pairs: &[Pair], risk: f64) -> Self {
             let (count, samples) = (pairs.len() as f64, f64::from(4 * SIDE * SIDE));
             let share = |e: &[Estimate; 4]| e.iter().map(Estimate::share).sum::<f64>() / 4.0;
-            let ratio = |(truth, e): &(f64, [Estimate; 4])| {
+            let ratio = |(truth, e): &Pair| {
                 (share(e) - truth).abs() / half_width(*truth, samples, 0.5 * risk / count)
             };
-            let mean = |of: &dyn Fn(&(f64, [Estimate; 4])) -> f64| {
-                pairs.iter().map(of).sum::<f64>() / count
-            };
+            let mean = |of: &dyn Fn(&Pair) -> f64| pairs.iter().map(of).sum::<f64>() / count;
             let error = mean(&|(truth, e)| share(e) - truth).abs();
             let variance = mean(&|(truth, _)| truth * (1.0 - truth));
             let (mut squares, mut predicted, mut penumbra) = (0.0, 0.0, 0);

@@ -35,6 +35,7 @@
 
 mod disc;
 pub(crate) mod emitter;
+mod form_factor;
 mod fragments;
 pub mod image;
 mod occluder;
@@ -55,6 +56,7 @@ use occluder::{Shadow, pyramid, shadow_on};
 #[cfg(test)]
 mod tests;
 
+pub use form_factor::FormFactor;
 pub use image::{LightRegion, VisibilityImage};
 
 /// Raised with every change of the values that this module finds, so that images

@@ -47,8 +47,8 @@ pub(super) fn shadow_on(
     let distance = normal.dot(a); // times the length of the normal
     let largest = corners.iter().map(|v| v.abs().max_element());
     let largest = largest.fold(p.abs().max_element(), f64::max);
-    // Negated, so that NaN from overflow counts as edge-on.
-    if !(distance.abs() > EDGE_ON * largest * normal.length()) {
+    let clear = distance.abs() > EDGE_ON * largest * normal.length();
+    if !clear {
         return Shadow::Nothing;
     }
     if distance < 0.0 {

@@ -135,8 +135,8 @@ mod tests {
             for (i, t) in triangles.iter().enumerate() {
                 let inside = t.iter().any(|p| planes.iter().all(|&(n, o)| above(n, o, *p) > 0.0));
                 let behind = planes.iter().any(|&(n, o)| t.iter().all(|p| above(n, o, *p) < -1e-6));
-                prop_assert!(!(inside && !found.contains(&i)), "{} missed", i);
-                prop_assert!(!(behind && found.contains(&i)), "{} is behind", i);
+                prop_assert!(!inside || found.contains(&i), "{} missed", i);
+                prop_assert!(!behind || !found.contains(&i), "{} is behind", i);
             }
         }
 

@@ -16,6 +16,10 @@ use crate::error::LightError;
 use crate::light::{HardLight, LightShape};
 use crate::scene::Scene;
 
+/// Where shadow rays end, as a share of the way to the light: what lies in the
+/// light, such as the lamp's own mesh, is not in between.
+const RAY_END: f64 = 1.0 - 1e-12;
+
 /// What the samples of one receiver say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
@@ -118,7 +122,7 @@ impl SampledOracle {
         };
         let unit = [place(k % self.side, 0), place(k / self.side, 1)];
         let target = light.frame.at(on_light(light, unit));
-        !self.casters.any(&Ray::new(p, target - p), 0.0..1.0)
+        !self.casters.any(&Ray::new(p, target - p), 0.0..RAY_END)
     }
 
     fn hard_reaches(&self, p: DVec3) -> bool {
@@ -126,7 +130,7 @@ impl SampledOracle {
             return true; // in a spherical light
         };
         let end = match light {
-            HardLight::Point(_) => 1.0,
+            HardLight::Point(_) => RAY_END,
             HardLight::Directional(_) => f64::INFINITY,
         };
         !self

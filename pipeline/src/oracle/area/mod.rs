@@ -16,7 +16,8 @@
 //! disc, and what reaches into the sphere hides up to the disc's plane. A
 //! receiver inside a spherical light sees all of it. A receiver in the plane of
 //! a flat light is nothing special: the segments to it are well defined. Points
-//! and directions are lights without extent: 0 or 1.
+//! and directions are lights without extent: 0 or 1. A caster in the plane of the
+//! light, such as the lamp's own mesh, is not in between and hides nothing.
 //!
 //! # Self-shadowing
 //!
@@ -168,7 +169,7 @@ impl AreaOracle {
             return 0.0;
         }
         let end = match light {
-            HardLight::Point(_) => 1.0,
+            HardLight::Point(_) => 1.0 - 1e-12, // short of the lamp's own mesh
             HardLight::Directional(_) => f64::INFINITY,
         };
         let blocked = self

@@ -7,8 +7,10 @@ use super::fragments::HalfPlane;
 use crate::oracle::bvh::Region;
 
 /// A triangle whose plane passes the receiver at less than this share of the
-/// largest coordinate is seen edge-on and hides nothing. A tenth of the lift of
-/// [`crate::oracle::surfaces::Receiver`], ten times the rounding of a point.
+/// largest coordinate is seen edge-on, and one that lies as near to the light
+/// lies in it: both hide nothing. A tenth of the lift of
+/// [`crate::oracle::surfaces::Receiver`], ten times the rounding of a point and
+/// more.
 const EDGE_ON: f64 = 1e-14;
 
 /// A light's outline is too nearly in line with the receiver for a side of the
@@ -32,7 +34,9 @@ pub(super) enum Shadow {
 /// The part of `light` (relative to `p`) that the triangle hides from `p`.
 ///
 /// The points hidden are those in the cone over the triangle, bounded by three
-/// planes through `p`, and beyond the triangle's own plane. No point is
+/// planes through `p`, and beyond the triangle's own plane by more than
+/// rounding, so that a triangle in the plane of the light, such as the lamp's
+/// own mesh, hides nothing of it. No point is
 /// projected, so a triangle may cross the plane of the light or the plane
 /// through `p` parallel to it. Two triangles that share an edge have planes
 /// there that are equal or opposite to the bit, so they leave no gap.
@@ -45,9 +49,11 @@ pub(super) fn shadow_on(
     let [a, mut b, mut c] = corners.map(|v| v - p);
     let mut normal = (b - a).cross(c - a);
     let distance = normal.dot(a); // times the length of the normal
+    let reach = light.centre.abs() + light.u.abs() + light.v.abs(); // from p
     let largest = corners.iter().map(|v| v.abs().max_element());
-    let largest = largest.fold(p.abs().max_element(), f64::max);
-    let clear = distance.abs() > EDGE_ON * largest * normal.length();
+    let largest = largest.fold(p.abs().max_element().max(reach.max_element()), f64::max);
+    let slack = EDGE_ON * largest * normal.length();
+    let clear = distance.abs() > slack;
     if !clear {
         return Shadow::Nothing;
     }
@@ -59,7 +65,7 @@ pub(super) fn shadow_on(
         light.trace(a.cross(b), 0.0),
         light.trace(b.cross(c), 0.0),
         light.trace(c.cross(a), 0.0),
-        light.trace(normal, -distance.abs()),
+        light.trace(normal, -distance.abs() - slack),
     ];
     cut_by(bounds, outline)
 }

@@ -57,6 +57,7 @@ pub mod render;
 pub mod scene;
 pub mod shape;
 pub mod silhouette;
+pub mod silhouette_loops;
 pub mod technique;
 mod techniques;
 pub mod volume;

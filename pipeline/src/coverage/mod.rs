@@ -235,26 +235,6 @@ impl Projection {
         ((sector - 0.5 * cross) / area).max(0.0)
     }
 
-    /// What an edge adds to the hard shadow count: the count steps where a ray from
-    /// the light's centre along +y meets the edge's image, up if the centre is on
-    /// its umbra side. Which edges are met follows from the direction in which the
-    /// image crosses the ray's line and from that same side, so that the count
-    /// cannot disagree with the sign of the coverage.
-    fn crossing(&self, a: DVec3, b: DVec3, umbra: bool) -> i32 {
-        let rightwards = b.x >= 0.0;
-        if (a.x >= 0.0) == rightwards {
-            return 0;
-        }
-        // The umbra is right of an image in right-handed light coordinates.
-        let [x, y, z] = self.axes;
-        let right_handed = x.cross(y).dot(z) > 0.0;
-        match (rightwards == right_handed, umbra) {
-            (true, true) => 1,
-            (false, false) => -1,
-            _ => 0,
-        }
-    }
-
     /// The coverage of an edge, without sign; 0 where its image misses the light,
     /// and for a receiver on the edge.
     pub fn coverage(&self, edge: [DVec3; 2]) -> f64 {
@@ -284,15 +264,24 @@ pub fn loop_visibility(light: &LightPlane, points: &[DVec3], receiver: DVec3) ->
     }
     let centre = light.centre();
     let n = points.len();
-    let (mut count, mut sum) = (0, 0.0);
+    let (mut turned, mut sum) = (0.0, 0.0);
     for k in 0..n {
         let edge = [points[k], points[(k + 1) % n]];
         let umbra = umbra_side(centre, edge, receiver);
-        count += projection.crossing(images[k], images[(k + 1) % n], umbra);
         let sign = if umbra { 1.0 } else { -1.0 };
+        turned += sign * angle(images[k], images[(k + 1) % n]);
         sum += sign * projection.coverage(edge);
     }
-    Some(1.0 - f64::from(count) + sum)
+    let count = (turned / std::f64::consts::TAU).round();
+    Some(1.0 - count + sum)
+}
+
+/// Angle without sign that an edge's image takes up round the light's centre. The
+/// sign comes from the one predicate, so that the count agrees with it also where
+/// the image passes through the centre and rounding would decide.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    let (a, b) = (a.truncate(), b.truncate());
+    libm::atan2(a.perp_dot(b).abs(), a.dot(b))
 }
 
 /// Covectors dual to u, v and a unit normal.

@@ -96,8 +96,11 @@ pub enum Clipped {
     InPlane,
 }
 
-/// What counts as touching, in radii of the light.
-const TOUCH: f64 = 1e-9;
+/// What counts as in the plane of a flat light, in radii of the light.
+const IN_PLANE: f64 = 1e-9;
+/// What counts as touching, in radii of the light: near the light, rays from the
+/// ends of an edge become opposite, and f32 could not tell their sides.
+const TOUCH: f64 = 1e-6;
 
 impl AreaLight {
     /// The convex light of a scene's light. Rectangles shine towards
@@ -214,7 +217,7 @@ impl AreaLight {
     }
 
     /// What of the edge can cast: the part in front of a flat light, the parts
-    /// outside a sphere. A part that comes within 1e-9 radii of the light is
+    /// outside a sphere. A part that comes within 1e-6 radii of the light is
     /// said to touch it.
     pub fn clip(&self, ends: [DVec3; 2]) -> Clipped {
         match self {
@@ -226,7 +229,7 @@ impl AreaLight {
     }
 
     fn clip_to_front(&self, centre: DVec3, normal: DVec3, ends: [DVec3; 2]) -> Clipped {
-        let near = TOUCH * self.bounding_radius();
+        let near = IN_PLANE * self.bounding_radius();
         let heights = ends.map(|e| normal.dot(e - centre));
         let in_plane = heights.map(|z| z.abs() <= near);
         if in_plane == [true, true] {
@@ -243,17 +246,24 @@ impl AreaLight {
             return Clipped::Behind;
         }
         let part = front_part(ends, heights);
-        let on_plane = [0, 1].into_iter().find(|&k| heights[k] <= near);
+        let low = heights.map(|z| z <= TOUCH * self.bounding_radius());
+        let touch = match low {
+            [true, true] => self.meets(part),
+            [true, false] => self.meets([part[0]; 2]),
+            [false, true] => self.meets([part[1]; 2]),
+            [false, false] => None,
+        };
+        let onto_plane = |p: DVec3| p - normal * normal.dot(p - centre);
         Clipped::Parts(vec![LitEdge {
             ends: part,
-            touch: on_plane.and_then(|k| self.meets([part[k]; 2])),
+            touch: touch.map(onto_plane),
             clipped: part != ends,
         }])
     }
 
     /// A point that a segment in a flat light's plane shares with the light.
     fn meets(&self, [a, b]: [DVec3; 2]) -> Option<DVec3> {
-        let near = TOUCH * self.bounding_radius();
+        let near = IN_PLANE * self.bounding_radius();
         match self {
             Self::Sphere { .. } => None,
             Self::Disc { centre, radius, .. } => {
@@ -310,24 +320,27 @@ fn nearest_on_segment([a, b]: [DVec3; 2], p: DVec3) -> DVec3 {
 }
 
 fn clip_to_sphere(centre: DVec3, radius: f64, ends: [DVec3; 2]) -> Clipped {
-    let reach = radius * (1.0 + TOUCH);
     let nearest = nearest_on_segment(ends, centre);
     let gap2 = (nearest - centre).length_squared();
-    if gap2 > reach * reach {
+    if gap2 >= radius * radius {
+        let reach = radius * (1.0 + TOUCH);
         return Clipped::Parts(vec![LitEdge {
             ends,
-            touch: None,
+            touch: (gap2 <= reach * reach).then_some(nearest),
             clipped: false,
         }]);
     }
     // From each end to where the edge meets the sphere.
-    let half_chord = (reach * reach - gap2).max(0.0).sqrt();
+    let from = nearest - centre;
     let parts = [0, 1].into_iter().filter_map(|k| {
         let outward = ends[k] - centre;
-        if outward.length_squared() <= reach * reach {
+        if outward.length_squared() <= radius * radius {
             return None;
         }
-        let hit = nearest + (ends[k] - nearest).normalize_or_zero() * half_chord;
+        let along = (ends[k] - nearest).normalize_or_zero();
+        let b = from.dot(along);
+        let reach = (b * b + radius * radius - gap2).sqrt() - b;
+        let hit = nearest + along * reach;
         Some(LitEdge {
             ends: if k == 0 {
                 [ends[0], hit]

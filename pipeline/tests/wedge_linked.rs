@@ -76,7 +76,9 @@ fn jumps(seed: u64) -> (f64, f64, u32) {
     let mut random = Random(seed);
     let (mut ours, mut first_try, mut tested) = (0.0f64, 0.0f64, 0);
     for n in 3..10 {
-        let (wedges, _) = linked(&polygon(n, 1.0, 0.3, &mut random), 0.5);
+        let mut points = polygon(n, 1.0, 0.5, &mut random);
+        points.iter_mut().for_each(|p| *p *= random.range(0.5, 1.5));
+        let (wedges, _) = linked(&points, 1.0);
         for k in 0..wedges.len() {
             let (w, next) = (&wedges[k], &wedges[(k + 1) % wedges.len()]);
             assert_eq!(
@@ -104,7 +106,7 @@ fn intensity_is_continuous_across_shared_side_planes_and_equation_1_is_not() {
     let (ours, first_try, tested) = jumps(42);
     eprintln!("{tested} points: jump {ours:.1e}; by equation (1) {first_try:.3}");
     assert!(tested > 1000 && ours < 1e-6, "{ours}");
-    assert!(first_try > 0.05, "negative control: {first_try}");
+    assert!(first_try > 0.02, "negative control: {first_try}");
 }
 
 #[test]
@@ -115,11 +117,14 @@ fn meshes_are_closed_and_wind_round_what_is_inside() {
     for round in 0..60 {
         let radius = [0.3, 1.5, 4.0][round % 3];
         let n = 3 + round % 6;
-        let points = if round % 7 == 0 {
+        let mut points = if round % 7 == 0 {
             acute()
         } else {
             polygon(n, 0.6, 0.2, &mut random)
         };
+        if round % 4 == 1 {
+            points.reverse(); // a hole: all its corners are concave
+        }
         let (wedges, statistics) = linked(&points, radius);
         let overlapping = wedges.iter().filter(|w| w.overlap().is_some()).count();
         assert_eq!(statistics.overlapping_sides as usize, overlapping);
@@ -142,7 +147,7 @@ fn meshes_are_closed_and_wind_round_what_is_inside() {
                     let count = winding(&mesh, p);
                     assert!(
                         (count - wanted).abs() < 1e-6,
-                        "{:?} {count} {wanted}",
+                        "{:?} {count} {wanted} ",
                         w.overlap()
                     );
                 }
@@ -253,12 +258,12 @@ fn a_point_light_gives_the_hard_shadow_quad() {
 /// interpolation and its smoothstep are from it.
 #[test]
 fn interpolation_against_the_segment_of_a_disc() {
-    let far = 1000.0;
+    let far = 2.0;
     let points = [
         DVec3::new(-far, 0.0, 0.0),
         DVec3::new(far, 0.0, 0.0),
-        DVec3::new(far, 2.0 * far, 0.0),
-        DVec3::new(-far, 2.0 * far, 0.0),
+        DVec3::new(far, 4.0, 0.0),
+        DVec3::new(-far, 4.0, 0.0),
     ];
     let radius = 0.01;
     let (wedges, _) = linked(&points, radius);

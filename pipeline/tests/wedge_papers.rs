@@ -176,7 +176,7 @@ fn tight_wedges_halve_the_area_and_the_exact_one_is_smaller_still() {
         ("short, near the axis", [0.1, 0.5], 0.3, 1.9..2.3, 1.0..1.12),
         ("short, all over", [0.1, 0.5], 1.5, 2.2..2.8, 1.0..1.12),
         ("long, near the axis", [1.0, 3.0], 0.3, 1.6..2.3, 1.1..1.5),
-        ("long, all over", [1.0, 3.0], 1.5, 1.6..2.5, 1.1..1.5),
+        ("long, all over", [1.0, 3.0], 1.5, 2.2..4.5, 1.1..1.5),
     ] {
         let ([sphere, tight, exact], count) = area_sums(length, spread, 23);
         let (saved, left) = (sphere / tight, tight / exact);

@@ -117,6 +117,8 @@ struct TangentPlanes {
     k: DVec3,
     u: DVec3,
     v: DVec3,
+    /// Centre and two radii at right angles, for discs.
+    disc: Option<[DVec3; 3]>,
 }
 
 /// An arc of tangent planes: middle and half width, radians.
@@ -136,6 +138,7 @@ impl TangentPlanes {
             k: normal,
             u: u * z - normal * x,
             v: v * z - normal * y,
+            disc: Some([centre, u * radius, v * radius]),
         }
     }
 
@@ -150,6 +153,7 @@ impl TangentPlanes {
             k: axis * sine,
             u: u * cosine,
             v: v * cosine,
+            disc: None,
         }
     }
 
@@ -157,10 +161,21 @@ impl TangentPlanes {
         self.k + self.u * libm::cos(angle) + self.v * libm::sin(angle)
     }
 
-    /// The ray of the cone that lies in the plane at `angle`.
-    fn contact(&self, angle: f64) -> DVec3 {
-        let turning = self.v * libm::cos(angle) - self.u * libm::sin(angle);
-        self.normal(angle).cross(turning)
+    /// The ray in the planes at both angles, which are less than half a turn apart,
+    /// the second not below the first.
+    fn ray(&self, from: f64, to: f64) -> DVec3 {
+        const HAIR: f64 = 1e-6;
+        let middle = 0.5 * (from + to);
+        let (sine, cosine) = (libm::sin(middle), libm::cos(middle));
+        if let Some([centre, u, v]) = self.disc {
+            // Where the tangents of the disc meet; an apex in its plane has rays too.
+            let reach = 1.0 / libm::cos(0.5 * (to - from));
+            return self.apex - centre - (u * cosine + v * sine) * reach;
+        }
+        if to - from < HAIR {
+            return self.normal(middle).cross(self.v * cosine - self.u * sine);
+        }
+        self.normal(from).cross(self.normal(to))
     }
 
     /// Planes that have `direction` on their inner side; `Err` with whether all
@@ -179,34 +194,21 @@ impl TangentPlanes {
 
     fn whole_cone(&self) -> Ends {
         let step = TAU / ARC_SEGMENTS as f64;
-        let normals: Vec<DVec3> = (0..=ARC_SEGMENTS)
-            .map(|k| self.normal(step * (k % ARC_SEGMENTS) as f64))
-            .collect();
+        let at = |k: usize| step * k as f64;
+        let rays = (0..ARC_SEGMENTS).map(|k| self.ray(at(k), at(k + 1)));
         Ends::One(End {
             apex: self.apex,
-            rays: normals.windows(2).map(|w| w[0].cross(w[1])).collect(),
+            rays: rays.collect(),
         })
     }
 
-    /// The rays between consecutive planes of the arc, with exactly `bounds` as
-    /// its first and last plane.
-    fn rays(&self, arc: Arc, bounds: [DVec3; 2]) -> Vec<DVec3> {
-        const HAIR: f64 = 1e-6;
-        if arc.half < HAIR {
-            return vec![self.contact(arc.middle)];
-        }
+    /// The rays between consecutive planes of the arc, those at its ends included.
+    fn rays(&self, arc: Arc) -> Vec<DVec3> {
         let steps = (2.0 * arc.half / (TAU / ARC_SEGMENTS as f64))
             .ceil()
             .max(1.0) as usize;
-        let at = |k: usize| match k {
-            0 => bounds[0],
-            _ if k == steps => bounds[1],
-            _ => {
-                let along = 2.0 * k as f64 / steps as f64 - 1.0;
-                self.normal(arc.middle + along * arc.half)
-            }
-        };
-        (0..steps).map(|k| at(k).cross(at(k + 1))).collect()
+        let at = |k: usize| arc.middle + (2.0 * k as f64 / steps as f64 - 1.0) * arc.half;
+        (0..steps).map(|k| self.ray(at(k), at(k + 1))).collect()
     }
 }
 
@@ -223,13 +225,12 @@ fn under_round_light([first, second]: [TangentPlanes; 2]) -> Ends {
         Err(true) => return second.whole_cone(),
         Err(false) => return first.whole_cone(),
     };
-    let [front, back] = [-1.0, 1.0].map(|end| first.normal(arc.middle + end * arc.half));
-    let mut far_rays = second.rays(other, [back, front]);
-    far_rays.reverse();
+    let mut far_rays = second.rays(other);
+    far_rays.reverse(); // its planes rise from back to front
     Ends::Two([
         End {
             apex: first.apex,
-            rays: first.rays(arc, [front, back]),
+            rays: first.rays(arc),
         },
         End {
             apex: second.apex,

@@ -50,7 +50,9 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// The polyhedron between the ends; rays of no length are dropped.
+    /// The polyhedron between the ends; rays of no length are dropped. An end
+    /// without rays takes those of the other; without any it is no volume: no
+    /// planes, no mesh.
     pub fn new(ends: Ends) -> Self {
         let ends = normalised(ends);
         let planes = planes(&ends).into_iter().flatten().collect();
@@ -139,7 +141,15 @@ fn normalised(ends: Ends) -> Ends {
         rays: end.rays.iter().filter_map(|r| r.try_normalize()).collect(),
     };
     match ends {
-        Ends::Two(two) => Ends::Two(two.map(unit)),
+        Ends::Two(two) => {
+            let [mut a, mut b] = two.map(unit);
+            if a.rays.is_empty() {
+                a.rays.clone_from(&b.rays);
+            } else if b.rays.is_empty() {
+                b.rays.clone_from(&a.rays);
+            }
+            Ends::Two([a, b])
+        }
         Ends::One(end) => Ends::One(unit(end)),
         half_space => half_space,
     }
@@ -177,6 +187,7 @@ fn planes(ends: &Ends) -> Vec<Option<Plane>> {
 fn assemble(ends: &Ends, ray_end: &mut RayEnd, cut: Option<&Cut>) -> WedgeMesh {
     let mut mesh = WedgeMesh::default();
     match ends {
+        Ends::Two([end, _]) | Ends::One(end) if end.rays.is_empty() => {}
         Ends::Two(ends) => join(&mut mesh, ends, ray_end, cut),
         Ends::One(end) => pyramid(&mut mesh, end, ray_end),
         Ends::HalfSpace(plane) => half_space(&mut mesh, plane),

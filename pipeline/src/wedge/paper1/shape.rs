@@ -6,7 +6,9 @@ use super::LinkedWedge;
 use crate::wedge::WedgeMesh;
 use crate::wedge::polyhedron::{End, Ends, Polyhedron};
 
-/// In which of its planes the sides of a wedge meet (paper I, figure 6).
+/// In which of its planes the sides of a wedge meet (paper I, figure 6). Turns at a
+/// convex vertex meet in the back plane at the vertex itself: b runs round the
+/// light's centre against f.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Overlap {
     /// In the front plane only, at this point; the back face has no end.
@@ -21,7 +23,7 @@ impl LinkedWedge {
     /// Where the side planes meet inside front or back plane, if they do.
     pub fn overlap(&self) -> Option<Overlap> {
         let front = meeting_point(self.edge, self.front_rays, self.front.normal);
-        let back = meeting_point(self.edge, self.back_rays, self.back.normal);
+        let back = meeting_point(self.edge, self.back_rays, -self.back.normal);
         match (front, back) {
             (Some(f), Some(b)) => Some(Overlap::Both([f, b])),
             (Some(f), None) => Some(Overlap::Front(f)),
@@ -100,13 +102,18 @@ impl LinkedWedge {
     }
 }
 
-/// Where two rays from the ends of an edge, in one plane with it, meet.
+/// Where two rays from the ends of an edge, in one plane with it, meet. `normal` is
+/// that of the front plane, or against that of the back plane.
 fn meeting_point([a, b]: [DVec3; 2], [r, s]: [DVec3; 2], normal: DVec3) -> Option<DVec3> {
     let across = r.cross(s).dot(normal);
-    let edge = b - a;
-    let (t, u) = (edge.cross(s).dot(normal), edge.cross(r).dot(normal));
     // Parallel within rounding counts as never meeting.
-    let parallel = across.abs() <= 1e-12;
-    let meet = !parallel && t / across > 0.0 && u / across > 0.0;
-    meet.then(|| a + r * (t / across))
+    if across <= 1e-12 {
+        return None;
+    }
+    let edge = b - a;
+    if edge == DVec3::ZERO {
+        return Some(a); // a turn at a vertex whose rays are in the wrong order
+    }
+    let (t, u) = (edge.cross(s).dot(normal), edge.cross(r).dot(normal));
+    (t > 0.0 && u > 0.0).then(|| a + r * (t / across))
 }

@@ -122,6 +122,9 @@ fn meshes_are_closed_and_wind_round_what_is_inside() {
         } else {
             polygon(n, 0.6, 0.2, &mut random)
         };
+        if round % 5 == 2 {
+            points.iter_mut().for_each(|p| *p *= random.range(0.3, 1.5));
+        }
         if round % 4 == 1 {
             points.reverse(); // a hole: all its corners are concave
         }

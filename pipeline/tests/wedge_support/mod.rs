@@ -8,7 +8,7 @@ use gnomon_pipeline::wedge::WedgeMesh;
 use gnomon_pipeline::wedge::polyhedron::{End, Ends, Polyhedron};
 
 /// SplitMix64: a fixed stream per seed.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -19,24 +19,24 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    pub fn range(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
-    pub fn in_box(&mut self, half: f64) -> DVec3 {
+    pub(crate) fn in_box(&mut self, half: f64) -> DVec3 {
         DVec3::from([(); 3].map(|()| self.range(-half, half)))
     }
 
     /// Uniform on the sphere.
-    pub fn direction(&mut self) -> DVec3 {
+    pub(crate) fn direction(&mut self) -> DVec3 {
         loop {
             let v = self.in_box(1.0);
             if v.length_squared() < 1.0 && v.length_squared() > 0.01 {
@@ -48,13 +48,13 @@ impl Random {
 
 /// Right-handed frame of a light: u, v, and the lit side.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
-    pub centre: DVec3,
-    pub axes: [DVec3; 3],
+pub(crate) struct Frame {
+    pub(crate) centre: DVec3,
+    pub(crate) axes: [DVec3; 3],
 }
 
 impl Frame {
-    pub fn random(random: &mut Random) -> Self {
+    pub(crate) fn random(random: &mut Random) -> Self {
         let n = random.direction();
         let u = n.cross(random.direction()).normalize();
         Self {
@@ -63,14 +63,14 @@ impl Frame {
         }
     }
 
-    pub fn at(&self, x: f64, y: f64, z: f64) -> DVec3 {
+    pub(crate) fn at(&self, x: f64, y: f64, z: f64) -> DVec3 {
         self.centre + self.axes[0] * x + self.axes[1] * y + self.axes[2] * z
     }
 }
 
 /// Kinds of light, all about 1 across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     Square,
     Rectangle,
     Parallelogram,
@@ -78,7 +78,7 @@ pub enum Kind {
     Sphere,
 }
 
-pub const KINDS: [Kind; 5] = [
+pub(crate) const KINDS: [Kind; 5] = [
     Kind::Square,
     Kind::Rectangle,
     Kind::Parallelogram,
@@ -86,7 +86,7 @@ pub const KINDS: [Kind; 5] = [
     Kind::Sphere,
 ];
 
-pub fn shape(kind: Kind, frame: &Frame) -> LightShape {
+pub(crate) fn shape(kind: Kind, frame: &Frame) -> LightShape {
     let [u, v, n] = frame.axes;
     let centre = frame.centre;
     let rectangle = |edge_u, edge_v| LightShape::Rectangle {
@@ -110,12 +110,12 @@ pub fn shape(kind: Kind, frame: &Frame) -> LightShape {
     }
 }
 
-pub fn light(kind: Kind, frame: &Frame) -> AreaLight {
+pub(crate) fn light(kind: Kind, frame: &Frame) -> AreaLight {
     AreaLight::new(&shape(kind, frame)).unwrap()
 }
 
 /// A random point of the light.
-pub fn light_point(shape: &LightShape, random: &mut Random) -> DVec3 {
+pub(crate) fn light_point(shape: &LightShape, random: &mut Random) -> DVec3 {
     match *shape {
         LightShape::Rectangle {
             centre,
@@ -142,7 +142,7 @@ pub fn light_point(shape: &LightShape, random: &mut Random) -> DVec3 {
 }
 
 /// An edge in front of the light and clear of it, as long as asked.
-pub fn edge(frame: &Frame, random: &mut Random, length: [f64; 2]) -> [DVec3; 2] {
+pub(crate) fn edge(frame: &Frame, random: &mut Random, length: [f64; 2]) -> [DVec3; 2] {
     loop {
         let [x, y] = [(); 2].map(|()| random.range(-2.0, 2.0));
         let middle = frame.at(x, y, random.range(0.8, 4.0));
@@ -156,7 +156,7 @@ pub fn edge(frame: &Frame, random: &mut Random, length: [f64; 2]) -> [DVec3; 2] 
 }
 
 /// Apexes and rays of a polyhedron.
-pub fn generators(volume: &Polyhedron) -> (Vec<DVec3>, Vec<DVec3>) {
+pub(crate) fn generators(volume: &Polyhedron) -> (Vec<DVec3>, Vec<DVec3>) {
     match volume.ends() {
         Ends::Two([a, b]) => (vec![a.apex, b.apex], [&a.rays[..], &b.rays[..]].concat()),
         Ends::One(End { apex, rays }) => (vec![*apex], rays.clone()),
@@ -168,7 +168,7 @@ pub fn generators(volume: &Polyhedron) -> (Vec<DVec3>, Vec<DVec3>) {
 }
 
 /// A random point inside, often near the boundary: few rays take part.
-pub fn inside(volume: &Polyhedron, random: &mut Random) -> DVec3 {
+pub(crate) fn inside(volume: &Polyhedron, random: &mut Random) -> DVec3 {
     let (apexes, rays) = generators(volume);
     let t = random.unit();
     let start = apexes[0] + (apexes[apexes.len() - 1] - apexes[0]) * t;
@@ -179,7 +179,7 @@ pub fn inside(volume: &Polyhedron, random: &mut Random) -> DVec3 {
 }
 
 /// How often a closed homogeneous mesh winds round `p`, before rounding.
-pub fn winding(mesh: &WedgeMesh, p: DVec3) -> f64 {
+pub(crate) fn winding(mesh: &WedgeMesh, p: DVec3) -> f64 {
     let seen = |i: u32| {
         let v: DVec4 = mesh.vertices[i as usize];
         (v.truncate() - p * v.w).normalize()

@@ -45,8 +45,9 @@ pub struct LinkedStatistics {
     pub aimed_at_centre: u64,
     /// Wedges whose side planes meet in front or back plane.
     pub overlapping_sides: u64,
-    /// Wedges left out because two of their planes are parallel, so that no side
-    /// plane exists.
+    /// Wedges left out because no side plane exists that could bound them: two planes
+    /// are parallel, or neighbours are so steep against each other that a shared ray
+    /// leaves the edge towards the light.
     pub without_sides: u64,
     /// Loops of which less than two edges were left.
     pub dropped_loops: u64,
@@ -218,6 +219,14 @@ impl Part {
     }
 
     fn between(&self, first: &Joint, second: &Joint) -> Option<LinkedWedge> {
+        let falls = |joint: &Joint| {
+            let to_front = self.along.cross(joint.front_ray);
+            let to_back = joint.back_ray.cross(self.along);
+            to_front.dot(self.front.normal) > 0.0 && to_back.dot(self.back.normal) > 0.0
+        };
+        if !(falls(first) && falls(second)) {
+            return None;
+        }
         // The joint's plane is positive towards the wedge after it.
         Some(LinkedWedge {
             edge: self.edge,

@@ -172,7 +172,8 @@ fn check(
             assert_eq!(halves.inner.open_edges(), 0, "{what}");
         }
     }
-    let rounding = 1e-8 * place.scale + 1e-14 * place.offset;
+    // Per unit of the case; an edge without digits left has a plane without digits.
+    let rounding = 1e-10 + 1e-15 * place.offset / place.scale;
     let mut random = Random(31);
     let mut outside = 0;
     for _ in 0..300 {
@@ -181,14 +182,14 @@ fn check(
         let p = e + (e - v) * random.range(0.0, 3.0);
         let lit = light
             .normal()
-            .is_none_or(|n| n.dot(e - light.centre()) > rounding);
+            .is_none_or(|n| n.dot(e - light.centre()) > 1e-9 * place.scale);
         let clear = kind != Kind::Sphere || (e - light.centre()).length() > 0.5 * place.scale;
         let through_itself = kind == Kind::Sphere && (e - v).dot(v - light.centre()) < 0.0;
         if edge[0] == edge[1] || !lit || !clear || through_itself {
             continue; // the light hides the edge itself
         }
-        let reach = 1.0 + (p - e).length() + (e - light.centre()).length();
-        let within = |w: &Wedge| w.volume.depth(p) >= -rounding * reach / place.scale.min(1.0);
+        let reach = (p - e).length() + (e - light.centre()).length();
+        let within = |w: &Wedge| w.volume.depth(p) >= -rounding * reach;
         outside += u32::from(!wedges.iter().any(within));
     }
     if outside > 0 {

@@ -13,7 +13,7 @@ use gnomon_pipeline::volume::ShadowVolume;
 use gnomon_pipeline::wedge::polyhedron::Ends;
 use gnomon_pipeline::wedge::{Construction, Plane, Wedge, WedgeStatistics};
 use wedge_support::{
-    Frame, KINDS, Kind, Random, edge, generators, inside, light, light_point, shape, winding,
+    Frame, KINDS, Kind, Random, edge, generators, grazing_point, inside, light, shape, winding,
 };
 
 const ROUNDING: f64 = 1e-12;
@@ -47,7 +47,7 @@ fn every_penumbra_point_lies_inside() {
             for _ in 0..120 {
                 let along = [0.0, 1.0, random.unit(), random.unit()][random.below(4)];
                 let e = edge[0] + (edge[1] - edge[0]) * along;
-                let v = light_point(&shape, &mut random);
+                let v = grazing_point(&shape, e, &mut random);
                 let depth = wedge.volume.depth(e + (e - v) * random.range(0.0, 3.0));
                 samples += 1;
                 outside += i32::from(depth < -ROUNDING);

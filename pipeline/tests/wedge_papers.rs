@@ -6,7 +6,9 @@ use glam::DVec3;
 use gnomon_pipeline::area_light::AreaLight;
 use gnomon_pipeline::wedge::polyhedron::{Ends, Polyhedron};
 use gnomon_pipeline::wedge::{Construction, Wedge, WedgeStatistics};
-use wedge_support::{Frame, KINDS, Kind, Random, edge, inside, light, light_point, shape, winding};
+use wedge_support::{
+    Frame, KINDS, Kind, Random, edge, grazing_point, inside, light, light_point, shape, winding,
+};
 
 const PAPERS: [Construction; 2] = [Construction::BoundingSphere, Construction::Tight];
 
@@ -40,7 +42,7 @@ fn the_papers_wedges_enclose_the_penumbra() {
             for _ in 0..100 {
                 let along = [0.0, 1.0, random.unit(), random.unit()][random.below(4)];
                 let e = edge[0] + (edge[1] - edge[0]) * along;
-                let v = light_point(&shape, &mut random);
+                let v = grazing_point(&shape, e, &mut random);
                 let depth = wedge.volume.depth(e + (e - v) * random.range(0.0, 3.0));
                 samples += 1;
                 outside += i32::from(depth < -1e-12);

@@ -141,6 +141,28 @@ pub(crate) fn light_point(shape: &LightShape, random: &mut Random) -> DVec3 {
     }
 }
 
+/// A point of the light; half the time one where a ray from `e` grazes it, which
+/// is where the penumbra ends.
+pub(crate) fn grazing_point(shape: &LightShape, e: DVec3, random: &mut Random) -> DVec3 {
+    if random.below(2) == 0 {
+        return light_point(shape, random);
+    }
+    match *shape {
+        LightShape::Sphere { centre, radius } => {
+            let axis = (e - centre).normalize();
+            let across = axis.cross(random.direction()).normalize();
+            let sine = radius / (e - centre).length();
+            centre + (axis * sine + across * (1.0 - sine * sine).sqrt()) * radius
+        }
+        LightShape::Disc {
+            centre,
+            normal,
+            radius,
+        } => centre + normal.cross(random.direction()).normalize() * radius,
+        _ => light_point(shape, random),
+    }
+}
+
 /// An edge in front of the light and clear of it, as long as asked.
 pub(crate) fn edge(frame: &Frame, random: &mut Random, length: [f64; 2]) -> [DVec3; 2] {
     loop {

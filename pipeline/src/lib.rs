@@ -46,7 +46,9 @@
 //! ```
 
 pub mod adjacency;
+pub mod area_light;
 pub mod caster;
+pub mod coverage;
 pub mod error;
 pub mod heat;
 pub mod light;
@@ -58,7 +60,9 @@ pub mod render;
 pub mod scene;
 pub mod shape;
 pub mod silhouette;
+pub mod silhouette_loops;
 pub mod technique;
 mod techniques;
 pub mod volume;
+pub mod wedge;
 pub mod winding;

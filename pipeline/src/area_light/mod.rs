@@ -80,7 +80,8 @@ pub enum AreaLight {
 
 impl AreaLight {
     /// The convex light of a scene's light. Rectangles shine towards
-    /// `edge_u x edge_v`, discs along their normal.
+    /// `edge_u x edge_v`, discs along their normal, polygons to where they are seen
+    /// counter-clockwise.
     ///
     /// # Errors
     /// Lights without area, and sizes that are not finite and positive.
@@ -121,6 +122,7 @@ impl AreaLight {
                 sized(centre, radius)?;
                 Ok(Self::Sphere { centre, radius })
             }
+            LightShape::Polygon(ref polygon) => Self::polygon(polygon.vertices().to_vec()),
             LightShape::Point { .. } => Err(AreaLightError::NoArea("point")),
             LightShape::Directional { .. } => Err(AreaLightError::NoArea("directional")),
         }

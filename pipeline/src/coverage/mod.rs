@@ -73,7 +73,8 @@ pub enum SphereOutline {
 }
 
 impl LightPlane {
-    /// The light plane of a scene's light; `None` for lights without area.
+    /// The light plane of a scene's light; `None` for lights without area
+    /// and for polygons.
     pub fn new(shape: &LightShape, outline: SphereOutline) -> Option<Self> {
         match *shape {
             LightShape::Rectangle {
@@ -98,7 +99,9 @@ impl LightPlane {
                 radius,
                 outline,
             }),
-            LightShape::Point { .. } | LightShape::Directional { .. } => None,
+            LightShape::Polygon(_) | LightShape::Point { .. } | LightShape::Directional { .. } => {
+                None
+            }
         }
     }
 

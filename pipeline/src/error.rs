@@ -33,6 +33,58 @@ pub enum MeshError {
     },
 }
 
+/// Why points do not make a [`crate::light::ConvexPolygon`].
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PolygonError {
+    /// Not enough points for an area.
+    #[error("{count} vertices; a polygon has at least 3")]
+    TooFewVertices {
+        /// Vertices given.
+        count: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} is {value:?}; every coordinate must be a finite number")]
+    NonFinite {
+        /// Index of the vertex.
+        vertex: usize,
+        /// Its coordinates.
+        value: [f64; 3],
+    },
+    /// All points on one line, or too large for their area to be a number.
+    #[error("the polygon's area is {area}; it must be above 0 and finite")]
+    NoArea {
+        /// The area found.
+        area: f64,
+    },
+    /// A vertex is off the plane of the others.
+    #[error("vertex {vertex} is {off} off the polygon's plane; a light polygon must be flat")]
+    NotFlat {
+        /// Index of the vertex.
+        vertex: usize,
+        /// Distance from the plane, scene units.
+        off: f64,
+    },
+    /// The outline turns back on itself or crosses itself.
+    #[error("the outline is not convex at vertex {vertex}; split it into convex polygons")]
+    NotConvex {
+        /// Index of the vertex.
+        vertex: usize,
+    },
+}
+
+/// A light that cannot be integrated over.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum LightError {
+    /// A rectangle whose edges are parallel, a disc without normal or radius.
+    #[error("the light's {what} is {value}; it must be above 0 and finite")]
+    NoExtent {
+        /// What vanishes: `area`, `normal` or `radius`.
+        what: &'static str,
+        /// Its size.
+        value: f64,
+    },
+}
+
 /// A built-in scene name that does not exist.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("no built-in scene is called '{name}'{}; there are: {}", suggestion(.nearest), .known.join(", "))]

@@ -46,18 +46,23 @@
 //! ```
 
 pub mod adjacency;
+pub mod area_light;
 pub mod caster;
+pub mod coverage;
 pub mod error;
 pub mod heat;
 pub mod light;
 pub mod mesh;
+pub mod metrics;
 pub mod obj;
 pub mod oracle;
 pub mod render;
 pub mod scene;
 pub mod shape;
 pub mod silhouette;
+pub mod silhouette_loops;
 pub mod technique;
 mod techniques;
 pub mod volume;
+pub mod wedge;
 pub mod winding;

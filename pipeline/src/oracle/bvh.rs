@@ -9,9 +9,13 @@
 //! Traversal order affects only speed: [`Bvh::closest`] breaks ties by the
 //! lowest triangle index, [`Bvh::count`] is a sum.
 
+mod gather;
+
 use std::ops::Range;
 
 use glam::DVec3;
+
+pub use gather::Region;
 
 /// Most triangles in a leaf.
 const LEAF_SIZE: usize = 4;

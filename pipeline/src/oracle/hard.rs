@@ -29,6 +29,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::bvh::{Bvh, Ray};
+pub use super::surfaces::SurfaceHit;
+use super::surfaces::Surfaces;
 use crate::caster::{Caster, Counting};
 use crate::light::HardLight;
 use crate::scene::{EyeRays, Scene};
@@ -40,17 +42,6 @@ const SELF_DISTANCE: f64 = 1e-10;
 
 /// One step of a 24-bit depth buffer.
 const DEPTH_STEP: f64 = 1.0 / 16_777_216.0;
-
-/// A point of a visible surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceHit {
-    /// Index into [`Scene::objects`].
-    pub object: u32,
-    /// Triangle of that object's mesh.
-    pub triangle: u32,
-    /// Distance along the line of sight (planar, not radial), scene units.
-    pub depth: f64,
-}
 
 /// What one image point shows: nothing, or a surface under a number of blockers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,12 +106,7 @@ impl PixelTruth {
 pub struct HardOracle {
     light: HardLight,
     near: f64,
-    /// All triangles, in drawing order.
-    surfaces: Bvh,
-    /// Object and triangle of each surface.
-    surface_names: Vec<(u32, u32)>,
-    /// Index of each object's first surface.
-    first_surface: Vec<u32>,
+    surfaces: Surfaces,
     /// Counted triangles of the casters.
     blockers: Bvh,
     /// Surface index of each blocker.
@@ -130,30 +116,22 @@ pub struct HardOracle {
 impl HardOracle {
     /// Prepares `scene` for the hard light at the centre of `light`.
     pub fn new(scene: &Scene, light: HardLight) -> Self {
-        let mut surfaces = Vec::new();
-        let mut surface_names = Vec::new();
-        let mut first_surface = Vec::new();
-        let mut blockers = Vec::new();
-        let mut blocker_surface = Vec::new();
-        for (o, object) in scene.objects.iter().enumerate() {
-            let counted = object.casts.then(|| counted_triangles(&object.mesh, light));
-            first_surface.push(surfaces.len() as u32);
-            for t in 0..object.mesh.triangles().len() {
-                let corners = object.mesh.corners(t);
-                if counted.as_ref().is_some_and(|c| c[t]) {
-                    blockers.push(corners);
-                    blocker_surface.push(surfaces.len() as u32);
-                }
-                surfaces.push(corners);
-                surface_names.push((o as u32, t as u32));
-            }
-        }
+        let objects = scene.objects.iter();
+        let counted = objects.map(|o| o.casts.then(|| counted_triangles(&o.mesh, light)));
+        let counted: Vec<_> = counted.collect();
+        let surfaces = Surfaces::new(scene);
+        let counts = |surface: u32| {
+            let (object, triangle) = surfaces.name(surface);
+            counted[object as usize]
+                .as_ref()
+                .is_some_and(|c| c[triangle as usize])
+        };
+        let (blocker_surface, blockers): (Vec<_>, Vec<_>) =
+            surfaces.casters().filter(|(i, _)| counts(*i)).unzip();
         Self {
             light,
             near: scene.camera.near,
-            surfaces: Bvh::new(&surfaces),
-            surface_names,
-            first_surface,
+            surfaces,
             blockers: Bvh::new(&blockers),
             blocker_surface,
         }
@@ -161,18 +139,14 @@ impl HardOracle {
 
     /// What image point `(x, y)` shows, in pixels, y down from the top.
     pub fn sample(&self, rays: &EyeRays, x: f64, y: f64) -> Sample {
-        let ray = Ray::new(rays.origin, rays.direction(x, y));
-        let Some((surface, depth)) = self.surfaces.closest(&ray, self.near..f64::INFINITY) else {
+        let Some(hit) = self.surfaces.hit(rays, x, y) else {
             return Sample::default();
         };
-        let (object, triangle) = self.surface_names[surface as usize];
+        let ray = Ray::new(rays.origin, rays.direction(x, y));
+        let surface = self.surfaces.index_of(&hit);
         Sample {
-            hit: Some(SurfaceHit {
-                object,
-                triangle,
-                depth,
-            }),
-            shadow_count: self.blockers_above(surface, &ray, depth),
+            hit: Some(hit),
+            shadow_count: self.blockers_above(surface, &ray, hit.depth),
         }
     }
 
@@ -183,7 +157,7 @@ impl HardOracle {
             return true;
         };
         let ray = Ray::new(rays.origin, rays.direction(x, y));
-        let surface = self.first_surface[hit.object as usize] + hit.triangle;
+        let surface = self.surfaces.index_of(&hit);
         // The depth buffer holds 1 - near / depth: its slope is near / depth^2.
         let offset = steps * DEPTH_STEP * hit.depth * hit.depth / self.near;
         [-offset, offset]

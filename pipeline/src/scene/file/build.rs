@@ -10,7 +10,7 @@ use super::schema::{
     CameraTable, LightShapeTable, LightTable, MaterialTable, ObjectTable, SceneTable,
 };
 use super::shapes;
-use crate::light::{Light, LightShape};
+use crate::light::{ConvexPolygon, Light, LightShape};
 use crate::mesh::Shading;
 use crate::scene::{Camera, Material, Object, Scene, SceneWarning};
 use crate::shape::on_circle;
@@ -125,6 +125,12 @@ fn light_shape(source: &Source<'_>, table: &LightShapeTable) -> Built<LightShape
             edge_u: source.direction("edge-u", edge_u)?,
             edge_v: source.direction("edge-v", edge_v)?,
         },
+        LightShapeTable::Polygon { vertices } => {
+            let points = vertices.get_ref().iter().copied().map(DVec3::from);
+            let polygon = ConvexPolygon::new(points.collect::<Vec<_>>());
+            let located = |e| source.error(vertices.span(), format!("vertices: {e}"));
+            LightShape::Polygon(polygon.map_err(located)?)
+        }
         LightShapeTable::Disc {
             centre,
             normal,

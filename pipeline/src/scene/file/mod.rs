@@ -13,7 +13,8 @@
 //! fov = 45.0                      # vertical, degrees
 //! near = 0.1
 //!
-//! [[lights]]                      # point, square, rectangle, disc, sphere, directional
+//! [[lights]]                      # point, square, rectangle, polygon, disc, sphere,
+//!                                 # directional
 //! shape.square = { centre = [1.5, 4.0, 1.0], side = 1.0 }
 //! colour = [1.0, 1.0, 1.0]        # optional
 //!
@@ -153,6 +154,23 @@ shape.point = { position = [1, 4, 1] }
             scene.lights[0].shape,
             LightShape::Rectangle { .. }
         ));
+    }
+
+    #[test]
+    fn polygon_lights_are_read_and_judged() {
+        let with = |vertices: &str| {
+            let light = format!("shape.polygon = {{ vertices = {vertices} }}");
+            let head = HEAD.replace("shape.point = { position = [1, 4, 1] }", &light);
+            format!("{head}[[objects]]\nmesh.box = {{ size = [1, 1, 1] }}\n")
+        };
+        let scene = read(&with("[[0, 3, 0], [1, 3, 0], [0, 3, 1]]")).unwrap();
+        let LightShape::Polygon(polygon) = &scene.lights[0].shape else {
+            panic!("{:?}", scene.lights[0].shape);
+        };
+        assert_eq!(polygon.vertices()[2], DVec3::new(0.0, 3.0, 1.0));
+        let two = message(&with("[[0, 3, 0], [1, 3, 0]]"));
+        assert!(two.starts_with("s.toml:5:"), "{two}");
+        assert!(two.contains("at least 3"), "{two}");
     }
 
     #[test]

@@ -58,6 +58,9 @@ pub(super) enum LightShapeTable {
         edge_u: Triple,
         edge_v: Triple,
     },
+    Polygon {
+        vertices: Spanned<Vec<[f64; 3]>>,
+    },
     Disc {
         centre: Triple,
         normal: Triple,

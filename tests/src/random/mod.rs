@@ -3,7 +3,9 @@
 mod case;
 mod draw;
 mod geometry;
+mod look_up;
 mod state;
+mod texture;
 
 pub use case::random_case;
 pub use geometry::{Screen, grid_triangulation};

@@ -56,7 +56,7 @@ fn sources(case: &TwinCase, pass: &TwinPass) -> Vec<TextureSource> {
     list
 }
 
-fn sampler(r: &mut Random) -> Sampler {
+pub(super) fn sampler(r: &mut Random) -> Sampler {
     const ADDRESS: [AddressMode; 4] = [
         AddressMode::ClampToEdge,
         AddressMode::ClampToBorder,

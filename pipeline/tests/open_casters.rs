@@ -12,7 +12,7 @@ use glam::DVec3;
 use gnomon_pipeline::caster::Caster;
 use gnomon_pipeline::light::{HardLight, Light, LightShape};
 use gnomon_pipeline::mesh::{Mesh, Shading};
-use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth};
+use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth, PixelTruth};
 use gnomon_pipeline::render::{RenderError, RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Camera, Material, Object, Scene};
 use gnomon_pipeline::shape;
@@ -99,10 +99,10 @@ fn duplicates() -> Mesh {
 }
 
 fn casters() -> [(&'static str, Mesh, u32); 4] {
-    // The largest multiplicity of a volume's edge.
+    // Each with a count that some pixel has.
     [
         ("open cylinder", open_cylinder(), 2),
-        ("three fins", three_fins(), 3),
+        ("three fins", three_fins(), 2),
         ("glued shells", glued_shells(), 2),
         ("duplicates", duplicates(), 3),
     ]
@@ -266,26 +266,29 @@ fn the_casters_are_open_or_not_manifold() {
     }
 }
 
-/// Without one side of its volume a caster's picture is not the truth's: a
-/// missing triangle is noticed.
+/// The picture without one of the caster's triangles is not the truth's.
 #[test]
 fn negative_control_a_missing_triangle_is_noticed() {
     for (what, mesh, _) in casters() {
-        let [scene, ..] = &scenes(&mesh)[..] else {
-            unreachable!()
+        let scene = scenes(&mesh).remove(0);
+        let truth = HardTruth::of_scene(&scene, 0, SIZE, EdgeTolerance::HALF_PIXEL_AND_DEPTH);
+        let triangles = mesh.triangles();
+        let without = |t: usize| {
+            let rest = [&triangles[..t], &triangles[t + 1..]].concat();
+            let rest = Mesh::new(mesh.positions().to_vec(), rest, Shading::Flat).unwrap();
+            let mut less = scene.clone();
+            less.objects[1].mesh = Arc::new(rest);
+            let drawn = draw(&less, &["open-casters=generalised"]).unwrap();
+            let on_floor = |(p, _): &(&PixelTruth, &u8)| {
+                p.interior && p.centre.hit.is_some_and(|h| h.object == 0)
+            };
+            let pixels = truth.pixels.iter().zip(&drawn.stencil).filter(on_floor);
+            let differ = pixels.filter(|(p, s)| p.centre.shadow_count != u32::from(**s));
+            differ.count()
         };
-        let mut less = scene.clone();
-        let triangles = mesh.triangles()[1..].to_vec();
-        let rest = Mesh::new(mesh.positions().to_vec(), triangles, Shading::Flat).unwrap();
-        less.objects[1].mesh = Arc::new(rest);
-        let drawn = draw(&less, &["open-casters=generalised"]).unwrap();
-        let truth = HardTruth::of_scene(scene, 0, SIZE, EdgeTolerance::HALF_PIXEL_AND_DEPTH);
-        let pixels = truth.pixels.iter().zip(&drawn.stencil);
-        let floor =
-            pixels.filter(|(p, _)| p.interior && p.centre.hit.is_some_and(|h| h.object == 0));
-        let differ = floor
-            .filter(|(p, s)| p.centre.shadow_count != u32::from(**s))
-            .count();
-        assert!(differ > 20, "{what}: {differ}");
+        let step = triangles.len().div_ceil(8);
+        let differ: Vec<usize> = (0..triangles.len()).step_by(step).map(without).collect();
+        let noticed = differ.iter().filter(|d| **d > 20).count();
+        assert!(2 * noticed >= differ.len(), "{what}: {differ:?}");
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use gnomon_raster::state::{ColorWrites, ScissorRect, Viewport};
 use gnomon_raster::{
     ColorAttachment, CommandList, DepthStencilAttachment, Draw, Error, Format, Gpu, GpuConfig,
-    IndexBuffer, LoadOp, RenderPass, RenderPipeline, SimdLevel, StoreOp, Subresource,
+    IndexBuffer, LoadOp, RenderPass, RenderPipeline, SimdLevel, StoreOp, SubmitReport, Subresource,
     TextureBinding, TextureDescriptor, TextureDimension, TextureId, VertexBuffer,
 };
 
@@ -13,16 +13,24 @@ use super::{Random, look_up, state, texture};
 use crate::api::{Use, shaders};
 use crate::twin::{ColorSource, DepthSource, Discard, Program, TwinDraw};
 
-/// What became of everything that a seed tries, in order.
+/// What became of everything that a seed tries, in order: fragments written, or
+/// why not.
 #[must_use]
-pub fn misuse(seed: u64) -> Vec<Result<(), Error>> {
+pub fn misuse(seed: u64) -> Vec<Result<u64, Error>> {
     let mut r = Random::new(seed ^ 0xbad_c0de);
     let mut results = Vec::new();
     let mut gpu = match gpu(&mut r) {
         Ok(gpu) => gpu,
         Err(e) => return vec![Err(e)],
     };
-    let mut textures = vec![Use::new().depth];
+    let mut textures = Vec::new();
+    if r.one_in(8) {
+        textures.push(Use::new().depth); // of another GPU
+    }
+    for format in [Format::Rgba8Unorm, Format::Depth24Stencil8] {
+        let valid = TextureDescriptor::d2("valid", format, 24, 24);
+        textures.extend(gpu.create_texture(&valid));
+    }
     for _ in 0..r.between(2, 6) {
         match gpu.create_texture(&descriptor(&mut r)) {
             Ok(id) => textures.push(id),
@@ -30,14 +38,18 @@ pub fn misuse(seed: u64) -> Vec<Result<(), Error>> {
         }
     }
     for _ in 0..3 {
-        results.push(transfer(&mut r, &mut gpu, &textures));
+        results.push(transfer(&mut r, &mut gpu, &textures).map(|()| 0));
     }
     for _ in 0..3 {
         let passes = (0..r.between(0, 2)).map(|_| pass(&mut r, &gpu, &textures));
         let list = CommandList {
             passes: passes.collect(),
         };
-        results.push(gpu.submit(&list).map(|_| ()));
+        let written = |report: SubmitReport| {
+            let passes = report.passes.iter();
+            passes.map(|p| p.totals().fragments.written).sum()
+        };
+        results.push(gpu.submit(&list).map(written));
     }
     results
 }
@@ -102,6 +114,11 @@ fn subresource(r: &mut Random) -> Subresource {
     } else {
         Subresource::default()
     }
+}
+
+/// Its value once in eight times.
+fn rarely<T: Default>(r: &mut Random, f: impl Fn(&mut Random) -> T) -> T {
+    if r.one_in(8) { f(r) } else { T::default() }
 }
 
 /// Reads or fills some image, with the right number of texels or not.
@@ -173,14 +190,14 @@ fn pass(r: &mut Random, gpu: &Gpu, textures: &[TextureId]) -> RenderPass {
     let color: Vec<_> = (0..colors)
         .map(|_| ColorAttachment {
             texture: attached(r, gpu, textures, false),
-            subresource: subresource(r),
+            subresource: rarely(r, subresource),
             load: load(r),
             store: StoreOp::Store,
         })
         .collect();
     let depth_stencil = r.one_in(2).then(|| DepthStencilAttachment {
         texture: attached(r, gpu, textures, true),
-        subresource: subresource(r),
+        subresource: rarely(r, subresource),
         depth_load: LoadOp::Clear(wild(r)),
         depth_store: StoreOp::Store,
         stencil_load: LoadOp::Clear(r.next() as u8),
@@ -224,7 +241,7 @@ fn draw(r: &mut Random, formats: &[Format], depth: bool, textures: &[TextureId])
         d.indices = Some(Arc::new(indices(r, d.count.min(64), vertices as u32)));
     }
     d.vertices = buffer;
-    d.instances = r.pick(&[1, 1, 1, 0, 3, u32::MAX]);
+    d.instances = r.pick(&[1, 1, 1, 1, 1, 1, 2, 3, 3, 0, u32::MAX]);
     d.stencil_reference = r.array(|r| r.next() as u8);
     d.blend_constant = r.array(wild);
     d.viewport = r.one_in(3).then(|| viewport(r));
@@ -234,7 +251,7 @@ fn draw(r: &mut Random, formats: &[Format], depth: bool, textures: &[TextureId])
         width: r.pick(&[0, 1, 24, u32::MAX]),
         height: r.below(30),
     });
-    d.textures = (0..r.pick(&[0, 0, 1, 2, 8, 9]))
+    d.textures = (0..r.pick(&[0, 0, 0, 1, 2, 2, 2, 8, 8, 9]))
         .map(|_| TextureBinding {
             texture: r.pick(textures),
             sampler: sampler(r),

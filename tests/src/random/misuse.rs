@@ -181,7 +181,7 @@ fn attached(r: &mut Random, gpu: &Gpu, textures: &[TextureId], depth: bool) -> T
 }
 
 fn pass(r: &mut Random, gpu: &Gpu, textures: &[TextureId]) -> RenderPass {
-    let colors = r.pick(&[0, 1, 1, 1, 1, 2, 5]);
+    let colors = r.pick(&[0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2, 5]);
     let load = |r: &mut Random| match r.below(3) {
         0 => LoadOp::Load,
         1 => LoadOp::Clear(r.array(wild)),
@@ -208,31 +208,52 @@ fn pass(r: &mut Random, gpu: &Gpu, textures: &[TextureId]) -> RenderPass {
         .filter_map(|c| gpu.texture(c.texture).ok())
         .map(|t| t.descriptor().format)
         .collect();
-    let draws = (0..r.between(0, 2)).map(|_| draw(r, &formats, depth_stencil.is_some(), textures));
+    let depth = depth_stencil.as_ref();
+    let is_attached = |id: &TextureId| {
+        color.iter().any(|c| c.texture == *id) || depth.is_some_and(|d| d.texture == *id)
+    };
+    let free: Vec<_> = textures
+        .iter()
+        .filter(|t| !is_attached(t))
+        .copied()
+        .collect();
+    let readable = if free.is_empty() || r.one_in(12) {
+        textures
+    } else {
+        &free
+    };
+    let draws = (0..r.between(0, 3)).map(|_| draw(r, &formats, depth.is_some(), readable));
+    let draws = draws.collect();
     RenderPass {
         label: "pass".to_owned(),
-        draws: draws.collect(),
+        draws,
         color,
         depth_stencil,
     }
 }
 
 fn draw(r: &mut Random, formats: &[Format], depth: bool, textures: &[TextureId]) -> Draw {
-    let stride = r.pick(&[4, 4, 4, 7, 8, 3, 1, 0, 100]);
-    let vertices = r.pick(&[0, 1, 3, 12, 30]);
-    let data = (0..vertices * stride + r.below(3) as usize).map(|_| wild(r));
-    let data: Vec<f32> = data.collect();
+    let stride = r.pick(&[4, 4, 4, 4, 4, 7, 8, 8, 8, 8, 8, 3, 1, 0, 100]);
+    let vertices = r.pick(&[0, 1, 3, 12, 12, 30, 30]);
+    let tame = r.one_in(2);
+    let float = |k: usize, r: &mut Random| match k % stride {
+        _ if !tame => wild(r),
+        3 => r.pick(&[1.0, 1.0, 2.0]),
+        _ => r.float(-1.0, 1.2),
+    };
+    let length = vertices * stride + r.below(3) as usize * usize::from(stride > 0);
+    let data: Vec<f32> = (0..length).map(|k| float(k, r)).collect();
     let buffer = (!r.one_in(6)).then(|| Arc::new(VertexBuffer { data, stride }));
     let mut d = Draw::vertices_only("draw", &Arc::new(pipeline(r, formats, depth)), 0);
-    d.count = if r.one_in(30) {
-        r.pick(&[u32::MAX, 1 << 27, (1 << 27) + 1])
-    } else {
-        r.below(vertices as u32 + 1)
+    d.count = match r.below(32) {
+        0 => r.pick(&[u32::MAX, 1 << 27, (1 << 27) + 1]),
+        1..8 => r.below(vertices as u32 + 1),
+        _ => vertices as u32,
     };
     if d.count >= 1 << 27 && buffer.is_none() {
         d.count = u32::MAX; // what is valid takes gigabytes
     }
-    d.first = match r.below(12) {
+    d.first = match r.below(40) {
         0 => r.pick(&[1, u32::MAX, 1 << 31, (1 << 31) - 3]),
         1 => 1,
         _ => 0,
@@ -241,17 +262,21 @@ fn draw(r: &mut Random, formats: &[Format], depth: bool, textures: &[TextureId])
         d.indices = Some(Arc::new(indices(r, d.count.min(64), vertices as u32)));
     }
     d.vertices = buffer;
-    d.instances = r.pick(&[1, 1, 1, 1, 1, 1, 2, 3, 3, 0, u32::MAX]);
+    d.instances = if r.one_in(20) {
+        r.pick(&[0, 2, 3, u32::MAX])
+    } else {
+        1
+    };
     d.stencil_reference = r.array(|r| r.next() as u8);
     d.blend_constant = r.array(wild);
-    d.viewport = r.one_in(3).then(|| viewport(r));
+    d.viewport = r.one_in(6).then(|| viewport(r));
     d.scissor = r.one_in(4).then(|| ScissorRect {
         x: r.pick(&[0, 3, 24, 25, u32::MAX]),
         y: r.below(30),
         width: r.pick(&[0, 1, 24, u32::MAX]),
         height: r.below(30),
     });
-    d.textures = (0..r.pick(&[0, 0, 0, 1, 2, 2, 2, 8, 8, 9]))
+    d.textures = (0..r.pick(&[1, 2, 2, 2, 2, 2, 2, 8, 8, 8, 8, 9]))
         .map(|_| TextureBinding {
             texture: r.pick(textures),
             sampler: sampler(r),
@@ -288,10 +313,10 @@ fn viewport(r: &mut Random) -> Viewport {
 
 fn sampler(r: &mut Random) -> gnomon_raster::Sampler {
     let mut s = texture::sampler(r);
-    if r.one_in(8) {
+    if r.one_in(40) {
         s.lod = r.array(wild);
     }
-    if r.one_in(8) {
+    if r.one_in(40) {
         s.lod_bias = wild(r);
     }
     s.border = r.array(wild);
@@ -300,7 +325,10 @@ fn sampler(r: &mut Random) -> gnomon_raster::Sampler {
 
 fn pipeline(r: &mut Random, formats: &[Format], depth: bool) -> RenderPipeline {
     let mut p = if r.one_in(3) {
-        shaders(r.pick(&[0, 1, 4, 16, 17]), r.pick(&[0, 0, 1, 9]))
+        shaders(
+            r.pick(&[0, 1, 4, 4, 4, 16, 16, 17]),
+            r.pick(&[0, 0, 0, 0, 0, 1, 1, 9]),
+        )
     } else {
         lanes(r, formats)
     };
@@ -327,7 +355,7 @@ fn pipeline(r: &mut Random, formats: &[Format], depth: bool) -> RenderPipeline {
         if r.one_in(8) {
             t.write_mask = ColorWrites(r.next() as u8);
         }
-        if r.one_in(12) {
+        if r.one_in(40) {
             t.blend = state::target(r, Format::Rgba8Unorm).blend;
         }
     }

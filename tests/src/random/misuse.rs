@@ -41,7 +41,7 @@ pub fn misuse(seed: u64) -> Vec<Result<u64, Error>> {
         results.push(transfer(&mut r, &mut gpu, &textures).map(|()| 0));
     }
     for _ in 0..3 {
-        let passes = (0..r.between(0, 2)).map(|_| pass(&mut r, &gpu, &textures));
+        let passes = (0..r.pick(&[0, 1, 1, 1, 1, 2])).map(|_| pass(&mut r, &gpu, &textures));
         let list = CommandList {
             passes: passes.collect(),
         };
@@ -222,7 +222,8 @@ fn pass(r: &mut Random, gpu: &Gpu, textures: &[TextureId]) -> RenderPass {
     } else {
         &free
     };
-    let draws = (0..r.between(0, 3)).map(|_| draw(r, &formats, depth.is_some(), readable));
+    let draws =
+        (0..r.pick(&[0, 1, 1, 1, 1, 3])).map(|_| draw(r, &formats, depth.is_some(), readable));
     let draws = draws.collect();
     RenderPass {
         label: "pass".to_owned(),
@@ -233,7 +234,11 @@ fn pass(r: &mut Random, gpu: &Gpu, textures: &[TextureId]) -> RenderPass {
 }
 
 fn draw(r: &mut Random, formats: &[Format], depth: bool, textures: &[TextureId]) -> Draw {
-    let stride = r.pick(&[4, 4, 4, 4, 4, 7, 8, 8, 8, 8, 8, 3, 1, 0, 100]);
+    let stride = if r.one_in(12) {
+        r.pick(&[3, 1, 0, 100])
+    } else {
+        r.pick(&[4, 7, 8])
+    };
     let vertices = r.pick(&[0, 1, 3, 12, 12, 30, 30]);
     let tame = r.one_in(2);
     let float = |k: usize, r: &mut Random| match k % stride {
@@ -269,14 +274,19 @@ fn draw(r: &mut Random, formats: &[Format], depth: bool, textures: &[TextureId])
     };
     d.stencil_reference = r.array(|r| r.next() as u8);
     d.blend_constant = r.array(wild);
-    d.viewport = r.one_in(6).then(|| viewport(r));
+    d.viewport = r.one_in(10).then(|| viewport(r));
     d.scissor = r.one_in(4).then(|| ScissorRect {
         x: r.pick(&[0, 3, 24, 25, u32::MAX]),
         y: r.below(30),
         width: r.pick(&[0, 1, 24, u32::MAX]),
         height: r.below(30),
     });
-    d.textures = (0..r.pick(&[1, 2, 2, 2, 2, 2, 2, 8, 8, 8, 8, 9]))
+    let slots = match r.below(40) {
+        0 => 9,
+        1..4 => 1,
+        _ => 2,
+    };
+    d.textures = (0..slots)
         .map(|_| TextureBinding {
             texture: r.pick(textures),
             sampler: sampler(r),
@@ -286,7 +296,7 @@ fn draw(r: &mut Random, formats: &[Format], depth: bool, textures: &[TextureId])
 }
 
 fn indices(r: &mut Random, count: u32, vertices: u32) -> IndexBuffer {
-    let beyond = r.one_in(4);
+    let beyond = r.one_in(8);
     let index = |r: &mut Random| match r.below(8) {
         0 if beyond => r.pick(&[vertices, u32::MAX, 1 << 31, (1 << 31) - 1, 2_000_000_000]),
         _ => r.below(vertices.max(1)),
@@ -325,27 +335,30 @@ fn sampler(r: &mut Random) -> gnomon_raster::Sampler {
 
 fn pipeline(r: &mut Random, formats: &[Format], depth: bool) -> RenderPipeline {
     let mut p = if r.one_in(3) {
-        shaders(
-            r.pick(&[0, 1, 4, 4, 4, 16, 16, 17]),
-            r.pick(&[0, 0, 0, 0, 0, 1, 1, 9]),
-        )
+        let [varyings, slots] = match r.below(20) {
+            0 => [17, 0],
+            1 => [4, 9],
+            2 => [16, 8],
+            _ => [r.pick(&[0, 1, 4]), r.pick(&[0, 0, 1])],
+        };
+        shaders(varyings, slots)
     } else {
         lanes(r, formats)
     };
     p.primitive = state::primitive(r);
-    if r.one_in(8) {
+    if r.one_in(30) {
         p.primitive.line_width = wild(r);
         p.primitive.point_size = wild(r) * 200.0;
     }
-    if r.one_in(8) {
+    if r.one_in(30) {
         p.primitive.clip_planes = (0..r.between(1, 7)).map(|_| r.array(wild)).collect();
     }
-    p.depth_stencil = if depth || r.one_in(8) {
+    p.depth_stencil = if depth || r.one_in(30) {
         state::depth_stencil(r)
     } else {
         Default::default()
     };
-    if r.one_in(8) && depth {
+    if r.one_in(30) && depth {
         let bias = &mut p.depth_stencil.bias;
         [bias.constant, bias.slope, bias.clamp] = r.array(wild);
         p.depth_stencil.depth.bounds = Some(r.array(wild));

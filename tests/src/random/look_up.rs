@@ -58,7 +58,7 @@ fn coordinate(r: &mut Random, earlier: usize) -> Coordinate {
             offset: same(r.pick(&[0.0, -0.25])),
         },
         // Texels of the order of pixels.
-        0 | 1 | 2 => Coordinate {
+        0..=2 => Coordinate {
             of: Origin::Position,
             scale: r.array(|r| r.pick(&[1.0, 0.125, 0.02, -0.06, 0.3])),
             offset: r.array(|r| r.float(-1.0, 1.0)),

@@ -387,7 +387,7 @@ fn lanes(r: &mut Random, formats: &[Format]) -> RenderPipeline {
         ColorSource::Geometry,
     ]));
     program.outputs = formats.len().min(4);
-    program.discard = r.one_in(4).then(|| Discard::Below(0, 0.5));
+    program.discard = r.one_in(4).then_some(Discard::Below(0, 0.5));
     program.depth = r.one_in(4).then_some(DepthSource::Wild(1));
     if r.one_in(2) {
         look_up::add(r, &mut program, 2);

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use gnomon_raster::{GpuConfig, MAX_TEXTURE_SIZE, SimdLevel};
+use gnomon_raster::{GpuConfig, MAX_TEXTURE_SIZE, MAX_THREADS, SimdLevel};
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -96,7 +96,7 @@ pub(crate) struct GpuArgs {
     /// Side of execution tiles in pixels: 16, 32, 64 or 128
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = parse_tile)]
     pub(crate) tile: u32,
-    /// Instruction set: auto, scalar, sse2, sse4.2, avx2, avx512 or neon
+    /// Instruction set: auto, scalar, sse2, avx2, avx512 or neon
     #[arg(long, value_name = "LEVEL", default_value = "auto", value_parser = parse_simd)]
     pub(crate) simd: SimdLevel,
     /// Do not use zmin/zmax of 8x8 blocks to skip work
@@ -144,8 +144,6 @@ impl OverlayKind {
     }
 }
 
-const MAX_THREADS: usize = 1024;
-
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let valid =
         format!("expected WIDTHxHEIGHT in pixels, each 1 to {MAX_TEXTURE_SIZE}, such as 800x600");
@@ -160,7 +158,7 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
 fn parse_setting(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
-        _ => Err("expected KEY=VALUE, such as mode=zfail".to_owned()),
+        _ => Err("expected KEY=VALUE, such as method=zfail".to_owned()),
     }
 }
 

@@ -189,3 +189,43 @@ fn scene_files_and_models_are_rendered() {
     assert_eq!(doc["size"], serde_json::json!([24, 16]));
     assert!(folder.path("out/two----words-shadow-volumes.png").is_file());
 }
+
+/// A cube of two colours.
+const CUBE: &str = "mtllib paint.mtl\n\
+    v -1 0 -1\nv 1 0 -1\nv 1 2 -1\nv -1 2 -1\nv -1 0 1\nv 1 0 1\nv 1 2 1\nv -1 2 1\n\
+    usemtl red\nf 5 6 7 8\nf 1 4 3 2\nf 1 2 6 5\n\
+    usemtl blue\nf 4 8 7 3\nf 2 3 7 6\nf 1 5 8 4\n";
+
+/// Pixels of a picture in which red, and in which blue, is far above the other.
+fn coloured(folder: &Folder, name: &str) -> [usize; 2] {
+    let picture = image::open(folder.path(name)).unwrap().into_rgb8();
+    let count = |c: usize| {
+        let strong = |p: &&image::Rgb<u8>| p[c] > 100 && p[c] / 2 > p[2 - c];
+        picture.pixels().filter(strong).count()
+    };
+    [count(0), count(2)]
+}
+
+#[test]
+fn obj_models_have_their_materials() {
+    let folder = Folder::new("materials");
+    folder.write("cube.obj", CUBE);
+    let render = "render cube.obj --size 120x90 --out a.png";
+    let run = folder.gnomon(render).fine();
+    assert!(run.stderr().contains("missing-mtl") || run.stdout().contains("missing-mtl"));
+    assert_eq!(coloured(&folder, "a.png"), [0, 0]);
+    folder.write(
+        "paint.mtl",
+        "newmtl red\nKd 0.9 0.05 0.05\nnewmtl blue\nKd 0.05 0.05 0.9\nKs 0.4 0.4 0.4\nNs 30\n",
+    );
+    let run = folder.gnomon(&format!("{render} --json")).json();
+    assert_eq!(run["warnings"].as_array().unwrap().len(), 0);
+    let [red, blue] = coloured(&folder, "a.png");
+    assert!(red > 300 && blue > 300, "{red} {blue}");
+    folder.write("paint.mtl", "newmtl red\nKd 0.9 oops\nnewmtl blue\n");
+    let run = folder.gnomon(&format!("{render} --json")).json();
+    let warnings = run["warnings"].as_array().unwrap();
+    assert_eq!(warnings[0]["code"], "bad-mtl");
+    let message = warnings[0]["message"].as_str().unwrap();
+    assert!(message.contains("paint.mtl:2: 'Kd 0.9 oops'"), "{message}");
+}

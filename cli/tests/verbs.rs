@@ -15,7 +15,7 @@ fn scenes_are_listed() {
         assert!(text.contains(scene["name"].as_str().unwrap()));
         assert!(scene["triangles"].as_u64().unwrap() > 0, "{scene}");
     }
-    assert!(text.lines().all(|l| l.chars().count() <= 110), "{text}");
+    assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
     assert!(folder.names().is_empty());
 }
 
@@ -23,6 +23,7 @@ fn scenes_are_listed() {
 fn techniques_are_listed_with_parameters() {
     let folder = Folder::new("list-techniques");
     let text = folder.gnomon("techniques").fine().stdout();
+    assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
     let doc = folder.gnomon("techniques --json").json();
     for technique in doc["techniques"].as_array().unwrap() {
         assert!(text.contains(technique["name"].as_str().unwrap()));
@@ -49,10 +50,12 @@ fn demo_writes_pictures_and_report_and_checks_itself() {
     assert!(
         run.stderr()
             .lines()
-            .all(|l| l.starts_with("warning: ") || l.chars().count() <= 100),
+            .all(|l| l.starts_with("warning: ") || l.chars().count() <= 80),
         "{}",
         run.stderr()
     );
+    // Nobody looks: no bar, no escape sequences.
+    assert!(!run.stderr().contains(['\r', '\u{1b}', '█']));
     let doc = run.json();
     assert_eq!(doc["checks"]["skipping_is_invisible"], true);
     assert_eq!(doc["checks"]["methods_agree"], true);

@@ -115,6 +115,23 @@ impl Referenced {
                 local: Vec::new(),
             };
         };
+        // A table over the span of the indices is fast, but few indices may span gigabytes.
+        if (max - min) as usize / 64 > indices.len() {
+            return Self::of_sparse(indices);
+        }
+        Self::of_dense(indices, min, max)
+    }
+
+    fn of_sparse(indices: &[u32]) -> Self {
+        let mut vertices = indices.to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let place = |i: &u32| vertices.partition_point(|v| v < i) as u32;
+        let local = indices.iter().map(place).collect();
+        Self { vertices, local }
+    }
+
+    fn of_dense(indices: &[u32], min: u32, max: u32) -> Self {
         let mut place = vec![u32::MAX; (max - min) as usize + 1];
         for &i in indices {
             place[(i - min) as usize] = 0;
@@ -360,6 +377,14 @@ mod tests {
         let r = Referenced::of(&[7, 3, 7, 9, 3, 4]);
         assert_eq!(r.vertices, [3, 4, 7, 9]);
         assert_eq!(r.local, [2, 0, 2, 3, 0, 1]);
+        let sparse = [7, 3_000_000_000, 7, 2];
+        assert_eq!(Referenced::of(&sparse).vertices, [2, 7, 3_000_000_000]);
+        assert_eq!(Referenced::of(&sparse).local, [1, 2, 1, 0]);
+        let near = [7, 3, 7, 9, 3, 4];
+        assert_eq!(
+            Referenced::of_sparse(&near),
+            Referenced::of_dense(&near, 3, 9)
+        );
         assert_eq!(
             Referenced::of(&[]),
             Referenced {

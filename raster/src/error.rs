@@ -19,10 +19,16 @@ pub enum Error {
     },
     #[error("texture id {id} does not exist; {count} textures have been created")]
     NoSuchTexture { id: u32, count: usize },
-    #[error("texture `{texture}` has no mip {}, layer {}", .subresource.mip, .subresource.layer)]
+    #[error(
+        "texture `{texture}` has no mip {}, layer {}; it has {mip_levels} mip levels, this one with {layers} layers",
+        .subresource.mip, .subresource.layer
+    )]
     NoSuchSubresource {
         texture: String,
         subresource: Subresource,
+        mip_levels: u32,
+        /// Of the mip asked for; 0 where there is no such mip.
+        layers: usize,
     },
     #[error("texture `{texture}` is {format:?} and has no {wanted} aspect")]
     WrongAspect {

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::MAX_THREADS;
 use crate::command::CommandList;
 use crate::counters::{ClientTraffic, Counters};
 use crate::error::Error;
@@ -103,6 +104,12 @@ impl Gpu {
         }
         if execute::denormals_are_flushed() {
             return Err(Error::DenormalsFlushed);
+        }
+        if config.threads > MAX_THREADS {
+            return Err(Error::Threads {
+                given: config.threads,
+                reason: format!("the limit is {MAX_THREADS}"),
+            });
         }
         let pool = match config.threads {
             1 => None,

@@ -71,6 +71,8 @@ pub fn explain(seed: u64) -> String {
 fn without_pixels(case: &TwinCase) -> TwinCase {
     let mut c = case.clone();
     c.color.iter_mut().for_each(|i| i.texels.truncate(1));
+    let images = c.textures.iter_mut().flat_map(|t| &mut t.images);
+    images.flatten().for_each(|i| i.truncate(1));
     if let Some(d) = &mut c.depth {
         d.depth.truncate(1);
         d.stencil.truncate(1);

@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use gnomon_raster::{
     AccessObserver, BlockAccess, ColorAttachment, CommandList, DepthStencilAttachment, Draw, Error,
-    Gpu, GpuConfig, IndexBuffer, RenderPass, RenderPipeline, Subresource, TextureDescriptor,
-    TextureId, VertexBuffer,
+    Gpu, GpuConfig, IndexBuffer, RenderPass, RenderPipeline, Subresource, TextureBinding,
+    TextureDescriptor, TextureId, VertexBuffer,
 };
 
-use crate::twin::{Outcome, PassOutcome, TwinCase, TwinDraw, TwinPass, VertexSource};
+use crate::twin::{
+    Outcome, PassOutcome, TextureSource, TwinCase, TwinDraw, TwinPass, TwinTexture, VertexSource,
+    depth_image,
+};
 
 const WHOLE: Subresource = Subresource { mip: 0, layer: 0 };
 
@@ -16,6 +19,7 @@ const WHOLE: Subresource = Subresource { mip: 0, layer: 0 };
 struct Targets {
     color: Vec<TextureId>,
     depth: Option<TextureId>,
+    read: Vec<TextureId>,
 }
 
 /// Collects the accesses of each pass.
@@ -99,7 +103,38 @@ fn upload(gpu: &mut Gpu, case: &TwinCase) -> Result<Targets, Error> {
             .write_depth_stencil(WHOLE, &image.depth, &image.stencil)?;
         depth = Some(id);
     }
-    Ok(Targets { color, depth })
+    let read = case.textures.iter().map(|t| upload_texture(gpu, t));
+    Ok(Targets {
+        color,
+        depth,
+        read: read.collect::<Result<_, _>>()?,
+    })
+}
+
+fn upload_texture(gpu: &mut Gpu, t: &TwinTexture) -> Result<TextureId, Error> {
+    let id = gpu.create_texture(&TextureDescriptor {
+        label: "texture".to_owned(),
+        dimension: t.dimension,
+        format: t.format,
+        size: t.size,
+        mip_levels: t.images.len() as u32,
+    })?;
+    let texture = gpu.texture_mut(id)?;
+    for (mip, layers) in t.images.iter().enumerate() {
+        for (layer, texels) in layers.iter().enumerate() {
+            let at = Subresource {
+                mip: mip as u32,
+                layer: layer as u32,
+            };
+            if t.format.is_depth_stencil() {
+                let d = depth_image(t.format, texels);
+                texture.write_depth_stencil(at, &d.depth, &d.stencil)?;
+            } else {
+                texture.write_raw(at, texels)?;
+            }
+        }
+    }
+    Ok(id)
 }
 
 fn download(gpu: &Gpu, targets: &Targets, passes: Vec<PassOutcome>) -> Result<Outcome, Error> {
@@ -141,11 +176,11 @@ fn render_pass(pass: &TwinPass, targets: &Targets) -> RenderPass {
         label: "pass".to_owned(),
         color: pass.color.iter().map(color).collect(),
         depth_stencil,
-        draws: pass.draws.iter().map(draw).collect(),
+        draws: pass.draws.iter().map(|d| draw(d, targets)).collect(),
     }
 }
 
-fn draw(d: &TwinDraw) -> Draw {
+fn draw(d: &TwinDraw, targets: &Targets) -> Draw {
     let pipeline = Arc::new(RenderPipeline {
         label: "render pipeline".to_owned(),
         vertex: d.vertex_stage(),
@@ -167,8 +202,21 @@ fn draw(d: &TwinDraw) -> Draw {
         blend_constant: d.blend_constant,
         viewport: d.viewport,
         scissor: d.scissor,
+        textures: textures(d, targets),
         ..Draw::vertices_only("draw", &pipeline, d.count)
     }
+}
+
+fn textures(d: &TwinDraw, targets: &Targets) -> Vec<TextureBinding> {
+    let bind = |t: &crate::twin::TextureUse| TextureBinding {
+        texture: match t.source {
+            TextureSource::Texture(k) => targets.read[k],
+            TextureSource::Color(k) => targets.color[k],
+            TextureSource::Depth => targets.depth.expect("the case has one"),
+        },
+        sampler: t.sampler,
+    };
+    d.textures.iter().map(bind).collect()
 }
 
 /// Position, then varyings.

@@ -1,6 +1,7 @@
 //! Cross-crate suites: the naive twin of the rasteriser, its scene description,
-//! seeded random cases, and readers of the peers' files.
+//! seeded random cases, uses of the API to break, and readers of the peers' files.
 
+pub mod api;
 pub mod check;
 pub mod compare;
 pub mod digest;

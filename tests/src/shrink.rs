@@ -1,6 +1,6 @@
 //! Makes a failing case small before a person looks at it.
 
-use crate::twin::{TwinCase, TwinDraw};
+use crate::twin::{DepthSource, Discard, Program, TwinCase, TwinDraw};
 
 /// Removes whatever can be removed while `fails` stays true.
 #[must_use]
@@ -89,6 +89,12 @@ fn smaller_draws(d: &TwinDraw) -> Vec<TwinDraw> {
             .as_mut()
             .is_some_and(|p| set(&mut p.color, constant))
     });
+    with(&|d| d.program.as_mut().is_some_and(shorten_look_ups));
+    with(&|d| {
+        d.program
+            .as_mut()
+            .is_some_and(|p| set(&mut p.discards_first, false))
+    });
     for k in 0..d.targets.len() {
         with(&|d| {
             set(
@@ -104,6 +110,13 @@ fn smaller_draws(d: &TwinDraw) -> Vec<TwinDraw> {
     with(&|d| set(&mut d.vertex_source, crate::twin::VertexSource::Buffer));
     with(&|d| set(&mut d.viewport, None));
     list
+}
+
+/// Drops the last look-up, unless something else than colour needs look-ups.
+fn shorten_look_ups(p: &mut Program) -> bool {
+    let needed = matches!(p.depth, Some(DepthSource::LookUp(_)))
+        || matches!(p.discard, Some(Discard::LookUpBelow(..)));
+    !needed && p.look_ups.len() > 1 && p.look_ups.pop().is_some()
 }
 
 /// Leaves out the first few indices or vertices and those beyond a count.

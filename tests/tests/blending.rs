@@ -37,6 +37,7 @@ fn layers(size: u32, texels: Vec<[u32; 4]>, programs: &[Program], blend: BlendSt
             texels,
         }],
         depth: None,
+        textures: Vec::new(),
         passes: vec![TwinPass {
             color: vec![ColorUse {
                 image: 0,

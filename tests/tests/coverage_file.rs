@@ -52,6 +52,7 @@ fn covered(file: &Tricov, t: &CoveredTriangle) -> Vec<bool> {
             depth: vec![0.0; n],
             stencil: vec![0; n],
         }),
+        textures: Vec::new(),
         passes: vec![TwinPass {
             color: Vec::new(),
             depth: Some(depth),

@@ -1,6 +1,6 @@
 //! The twin by itself: laws that hold without a second rasteriser.
 
-use gnomon_raster::Counters;
+use gnomon_raster::{Counters, MAX_TEXTURES};
 use gnomon_tests::random::random_case;
 use gnomon_tests::twin::{Outcome, render, render_with};
 
@@ -48,7 +48,7 @@ fn random_cases_reach_every_counter() {
         .lines()
         .filter(|l| l.trim_end().ends_with(": 0,"))
         .collect();
-    // Fixed-function traffic has no textures, and nothing writes vertices or indices.
+    // Nothing writes textures, vertices or indices.
     assert!(
         sum.tiles.accepted > 0 && sum.tiles.culled > 0 && sum.primitives.steep_depth_planes > 0,
         "{zero:?}"
@@ -58,6 +58,9 @@ fn random_cases_reach_every_counter() {
             && sum.events.depth_clamped > 0
             && sum.events.nan_canonicalised > 0
     );
+    assert!((0..MAX_TEXTURES).all(|slot| {
+        sum.traffic.tex_fetches[slot] > 0 && sum.traffic.tex[slot].read_accesses > 0
+    }));
     assert!(
         sum.primitives.clipped > 0
             && sum.primitives.non_finite > 0

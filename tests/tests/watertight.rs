@@ -46,6 +46,7 @@ fn counting(triangles: &[[[f32; 2]; 3]]) -> TwinCase {
             depth: vec![0.0; n],
             stencil: vec![0; n],
         }),
+        textures: Vec::new(),
         passes: vec![TwinPass {
             color: Vec::new(),
             depth: Some(depth),

@@ -48,7 +48,8 @@ const STYLE: &str = include_str!("report.css");
 
 fn figure(figure: &Figure) -> String {
     format!(
-        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\">\
+        "<figure id=\"{0}\"><a href=\"#{0}\" title=\"Enlarge\">\
+         <img alt=\"{0}\" src=\"data:image/png;base64,{1}\"></a>\
          <figcaption><b>{0}</b> {2}</figcaption></figure>\n",
         escape(&figure.name),
         base64(&figure.png),

@@ -27,7 +27,7 @@ impl Table {
         }
     }
 
-    /// As text of at most about 95 columns.
+    /// As text that fits 80 columns as long as names do.
     pub(crate) fn to_text(&self) -> String {
         let mut table = TerminalTable::new();
         table
@@ -38,18 +38,40 @@ impl Table {
             .remove_style(TableComponent::RightBorderIntersections)
             .set_content_arrangement(ContentArrangement::Disabled);
         table.set_header(&self.header);
-        for row in &self.rows {
+        for row in self.rows.iter().filter(|r| r.len() > 1) {
             table.add_row(row);
         }
         for column in table.column_iter_mut().skip(1) {
             column.set_cell_alignment(CellAlignment::Right);
         }
         for column in table.column_iter_mut() {
-            column.set_padding((0, 1));
+            column.set_padding((0, 0));
         }
-        format!("{}\n{}\n", self.title, table.trim_fmt())
+        format!("{}\n{}", self.title, self.with_headings(&table.trim_fmt()))
+    }
+
+    /// Puts the headings between the rows; as cells they would widen the first column.
+    fn with_headings(&self, text: &str) -> String {
+        let mut lines = text.lines();
+        let mut out = String::new();
+        let mut put = |line: &str| {
+            out += line.trim_end();
+            out.push('\n');
+        };
+        lines.by_ref().take(HEAD_LINES).for_each(&mut put);
+        for row in &self.rows {
+            match &row[..] {
+                [heading] => put(heading),
+                _ => lines.next().into_iter().for_each(&mut put),
+            }
+        }
+        lines.for_each(put);
+        out
     }
 }
+
+/// Lines of a table before its rows: a rule, the names of columns, a rule.
+const HEAD_LINES: usize = 3;
 
 /// A frame and what to call it.
 #[derive(Clone, Copy)]
@@ -224,9 +246,45 @@ mod tests {
                 "total",
             ],
         );
+        let heading = "a heading, however long it is, is no cell and widens no column of numbers";
+        table.rows.push(vec![heading.to_owned()]);
         table.rows.push(traffic_row("volumes 15", &t));
+        table.rows.push(vec!["last".to_owned()]);
+        table.rows.push(traffic_row("total", &t));
         let text = table.to_text();
-        assert!(text.lines().all(|l| l.chars().count() <= 95), "{text}");
+        assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
         assert!(text.contains("999k/99.9k"));
+        let lines: Vec<&str> = text.lines().collect();
+        let starts = [
+            "t",
+            "──",
+            "pass",
+            "══",
+            heading,
+            "  volumes 15",
+            "last",
+            "  total",
+            "──",
+        ];
+        assert_eq!(lines.len(), starts.len(), "{text}");
+        for (line, start) in lines.iter().zip(starts) {
+            assert!(line.starts_with(start), "{text}");
+        }
+    }
+
+    #[test]
+    fn work_fits_a_terminal() {
+        let mut table = work(&[]);
+        let mut c = Counters::default();
+        c.fragments.generated = 999_400;
+        c.fragments.hiz_killed = 123_456;
+        c.fragments.depth_failed = 123_456;
+        c.fragments.written = 123_456;
+        c.tiles.tested = 12_345_678;
+        c.tiles.culled = 123_456;
+        c.tiles.accepted = 123_456;
+        table.rows.push(work_row("volumes 15", 99.94, &c));
+        let text = table.to_text();
+        assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
     }
 }

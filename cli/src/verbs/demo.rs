@@ -17,6 +17,7 @@ use crate::output::html::{Figure, Report};
 use crate::output::json::{FileDocument, RenderDocument, RenderJob, worker_threads};
 use crate::output::progress::Progress;
 use crate::output::tables::{self, Named, Table};
+use crate::output::wrap::hanging;
 use crate::output::{self, numbers, png};
 use crate::overlay;
 
@@ -341,7 +342,7 @@ fn skipped(shots: &[Shot]) -> Table {
         "bytes",
         "no skip",
         "saved",
-        "blocks culled",
+        "culled",
         "hiz kill",
         "same bits",
     ];
@@ -426,7 +427,7 @@ fn summary(
     files: &[FileDocument],
     seconds: f64,
 ) -> String {
-    let mut text = format!("{}\n", lead(args));
+    let mut text = hanging("", 0, &lead(args));
     for table in tables {
         text += &format!("\n{}", table.to_text());
     }

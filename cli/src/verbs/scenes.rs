@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::args::ListArgs;
 use crate::error::CliError;
 use crate::output;
+use crate::output::wrap::hanging;
 
 #[derive(Serialize)]
 struct ScenesDocument {
@@ -46,8 +47,9 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
     let widest = SCENES.iter().map(|s| s.name.len()).max().unwrap_or(0);
     let mut text = String::new();
     for scene in SCENES {
-        text += &format!("{:widest$}  {}\n", scene.name, scene.description);
+        let name = format!("{:widest$}  ", scene.name);
+        text += &hanging(&name, widest + 2, scene.description);
     }
-    text += "\nRender one with `gnomon render NAME`; a .toml scene or an .obj model may be given instead.";
+    text += "\nRender one with `gnomon render NAME`, or give a .toml scene or an .obj model.";
     output::print(&text)
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::args::ListArgs;
 use crate::error::CliError;
 use crate::output;
+use crate::output::wrap::hanging;
 
 #[derive(Serialize)]
 struct TechniquesDocument {
@@ -54,15 +55,14 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
     }
     let mut text = String::new();
     for technique in techniques() {
-        text += &format!("{}  {}\n", technique.name(), technique.summary());
+        text += &hanging(&format!("{}  ", technique.name()), 4, technique.summary());
         for p in technique.params() {
             let values = p.valid.replace('|', ", ");
-            text += &format!(
-                "    --set {}={}  ({values})\n        {}\n",
-                p.name, p.default, p.summary
-            );
+            text += &format!("    --set {}={}  ({values})\n", p.name, p.default);
+            text += &hanging(&" ".repeat(8), 8, p.summary);
         }
     }
-    text += "\nShown are the defaults, in brackets the values that are taken; N is any whole number from 0.";
+    text += "\nShown are the defaults, in brackets the values that are taken.\n\
+             N is any whole number from 0.";
     output::print(&text)
 }

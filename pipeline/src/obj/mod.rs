@@ -8,8 +8,11 @@
 //! positions and faces, as one object: two faces share a vertex exactly when
 //! they name the same `v` line.
 //!
-//! Materials, texture coordinates and the file's own normals are not used.
+//! Of materials, `Kd`, `Ks`, `Ns` and `illum` of the files that `mtllib` names are
+//! used, as linear RGB; whatever is wrong with them is a warning. Texture
+//! coordinates and the file's own normals are not used.
 
+mod mtl;
 mod polygon;
 mod scan;
 
@@ -19,15 +22,17 @@ use thiserror::Error;
 
 use crate::error::MeshError;
 use crate::mesh::{Mesh, Shading};
-use crate::scene::SceneWarning;
+use crate::scene::{MaterialPart, SceneWarning};
 
 /// A mesh read from OBJ text, and what was amiss without stopping it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjMesh {
     /// All faces of the file as one mesh; vertices in order of first use.
     pub mesh: Mesh,
+    /// Triangles that have a material, material after material.
+    pub parts: Vec<MaterialPart>,
     /// Codes `concave-polygons`, `skipped-faces`, `unsupported-statements`,
-    /// `missing-mtl`.
+    /// `missing-mtl`, `bad-mtl`, `limited-mtl`, `ignored-maps`, `unknown-material`.
     pub warnings: Vec<SceneWarning>,
 }
 
@@ -106,31 +111,34 @@ pub enum ObjProblem {
     Mesh(#[from] MeshError),
 }
 
-/// Reads an OBJ file.
+/// Reads an OBJ file and its material libraries.
 ///
 /// # Errors
-/// See [`ObjProblem`]. A missing `.mtl` is a warning.
+/// See [`ObjProblem`]. A missing or invalid `.mtl` is a warning.
 pub fn load(path: &Path, shading: Shading) -> Result<ObjMesh, ObjError> {
     let file = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| whole_file(&file, e.into()))?;
-    let exists = |mtl: &str| path.with_file_name(mtl).exists();
-    parse_with(&bytes, &file, shading, &exists)
+    let library = |name: &str| {
+        let path = path.with_file_name(name);
+        Some((path.display().to_string(), std::fs::read(&path).ok()?))
+    };
+    parse_with(&bytes, &file, shading, Some(&library))
 }
 
-/// Reads OBJ text; `file` names it in messages. Any bytes are accepted or
+/// Reads OBJ text without its materials; `file` names it in messages. Any bytes are accepted or
 /// refused with an error, never a panic.
 ///
 /// # Errors
 /// See [`ObjProblem`].
 pub fn parse(bytes: &[u8], file: &str, shading: Shading) -> Result<ObjMesh, ObjError> {
-    parse_with(bytes, file, shading, &|_| true)
+    parse_with(bytes, file, shading, None)
 }
 
 fn parse_with(
     bytes: &[u8],
     file: &str,
     shading: Shading,
-    mtl_exists: &dyn Fn(&str) -> bool,
+    library: Option<&scan::Library<'_>>,
 ) -> Result<ObjMesh, ObjError> {
     let scan = scan::Scan::of(bytes).map_err(|e| ObjError {
         file: file.to_owned(),
@@ -139,9 +147,12 @@ fn parse_with(
         problem: e.problem,
     })?;
     let built = build(&scan, shading).map_err(|problem| whole_file(file, problem))?;
+    let mut paint = library.map_or_else(Default::default, |l| scan.paint(l));
+    let parts = scan.parts(&mut paint);
     Ok(ObjMesh {
         mesh: built,
-        warnings: scan.warnings(mtl_exists),
+        parts,
+        warnings: scan.warnings(&paint),
     })
 }
 
@@ -183,6 +194,8 @@ v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1
 vn 0 0 1
 g front\nf 5//1 6//1 7//1 8//1\nf -5 -6 -7 -8\n
 g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+    const CUBE_WITH_LIBRARY: &str = "mtllib l\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
 
     fn read(text: &str) -> Result<ObjMesh, ObjError> {
         parse(text.as_bytes(), "t.obj", Shading::Smooth)
@@ -239,6 +252,51 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
         );
     }
 
+    fn painted(text: &str, library: &str) -> ObjMesh {
+        let read = |name: &str| (name == "paint.mtl").then(|| (name.to_owned(), library.into()));
+        parse_with(text.as_bytes(), "t.obj", Shading::Flat, Some(&read)).unwrap()
+    }
+
+    #[test]
+    fn faces_get_the_materials_they_use() {
+        let text = "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
+                    f 1 2 3\nusemtl red paint\nf 1 2 3 4\nusemtl b\nf 1 3 4\nf 1 2\nusemtl red paint\nf 4 3 2\n";
+        let read = painted(text, "newmtl b\nKd 0 0 1\nnewmtl red paint\nKd 1 0 0\n");
+        let parts: Vec<_> = read
+            .parts
+            .iter()
+            .map(|p| (p.material.albedo, &p.triangles[..]))
+            .collect();
+        assert_eq!(
+            parts,
+            [
+                ([1.0, 0.0, 0.0], &[1, 2, 4][..]),
+                ([0.0, 0.0, 1.0], &[3][..])
+            ]
+        );
+        assert_eq!(read.warnings.len(), 1, "the face of two corners");
+    }
+
+    #[test]
+    fn materials_that_cannot_be_had_are_warnings() {
+        let codes = |text: &str, library: &str| -> Vec<_> {
+            let read = painted(text, library);
+            read.warnings
+                .into_iter()
+                .map(|w| (w.code, w.message))
+                .collect()
+        };
+        let model = |l: &str| format!("mtllib {l}\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl a\nf 1 2 3\n");
+        let missing = codes(&model("none.mtl"), "");
+        assert!(missing.len() == 1 && missing[0].0 == "missing-mtl");
+        assert!(missing[0].1.contains("'none.mtl'"), "{missing:?}");
+        let unknown = codes(&model("paint.mtl"), "newmtl b\n");
+        assert!(unknown.len() == 1 && unknown[0].0 == "unknown-material");
+        let bad = codes(&model("paint.mtl"), "newmtl a\nKd red\n");
+        assert!(bad.len() == 1 && bad[0].0 == "bad-mtl");
+        assert!(bad[0].1.contains("paint.mtl:2: 'Kd red'"), "{bad:?}");
+    }
+
     #[test]
     fn comments_need_not_be_utf8_and_lines_may_continue() {
         let text = b"# caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 \\\n 1 0\nf 1 2 3\n";
@@ -269,6 +327,8 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     proptest! {
         #[test]
         fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            let library = |_: &str| Some(("l".to_owned(), bytes.clone()));
+            let _ = parse_with(CUBE_WITH_LIBRARY.as_bytes(), "fuzz", Shading::Smooth, Some(&library));
             let _ = parse(&bytes, "fuzz", Shading::Smooth);
         }
 

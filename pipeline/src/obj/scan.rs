@@ -1,13 +1,14 @@
-//! One pass over OBJ text: validation with line numbers, warnings, and the
-//! geometry rewritten for tobj.
+//! One pass over OBJ text: validation with line numbers, warnings, the geometry
+//! rewritten for tobj, and which faces use which material.
 
 use std::fmt::Write as _;
 
 use glam::DVec3;
 
 use super::ObjProblem;
+use super::mtl::Materials;
 use super::polygon::fan_is_valid;
-use crate::scene::SceneWarning;
+use crate::scene::{MaterialPart, SceneWarning};
 
 /// What a scan found.
 #[derive(Debug, Default)]
@@ -19,6 +20,12 @@ pub(super) struct Scan {
     positions: Vec<DVec3>,
     object: Option<String>,
     libraries: Vec<String>,
+    /// Names after `usemtl`, each once.
+    names: Vec<String>,
+    /// The name in force.
+    current: Option<usize>,
+    /// Triangles of each face, and its name.
+    painted: Vec<(usize, Option<usize>)>,
     concave: Tally,
     skipped: Tally,
     unsupported: Tally,
@@ -33,13 +40,13 @@ pub(super) struct ScanError {
 
 /// How often, and first where.
 #[derive(Debug, Default)]
-struct Tally {
-    count: usize,
-    first: String,
+pub(super) struct Tally {
+    pub(super) count: usize,
+    pub(super) first: String,
 }
 
 impl Tally {
-    fn add(&mut self, first: impl FnOnce() -> String) {
+    pub(super) fn add(&mut self, first: impl FnOnce() -> String) {
         if self.count == 0 {
             self.first = first();
         }
@@ -72,13 +79,22 @@ impl Scan {
             "f" => self.face(number, words)?,
             "o" | "g" => self.object = Some(words.collect::<Vec<_>>().join(" ")),
             "mtllib" => self.libraries.extend(words.map(str::to_owned)),
-            "vn" | "vt" | "vp" | "s" | "usemtl" | "l" | "p" => {}
+            "usemtl" => self.use_material(line.trim_start()[keyword.len()..].trim()),
+            "vn" | "vt" | "vp" | "s" | "l" | "p" => {}
             comment if comment.starts_with('#') => {}
             other => self
                 .unsupported
                 .add(|| format!("'{other}' in line {number}")),
         }
         Ok(())
+    }
+
+    fn use_material(&mut self, name: &str) {
+        let known = self.names.iter().position(|n| n == name);
+        self.current = Some(known.unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.names.len() - 1
+        }));
     }
 
     /// `v x y z`; further numbers (a weight or a colour) are ignored.
@@ -126,6 +142,7 @@ impl Scan {
         if !fan_is_valid(&polygon) {
             self.concave.add(|| format!("line {number}"));
         }
+        self.painted.push((corners.len() - 2, self.current));
         self.geometry.push('f');
         for corner in corners {
             let _ = write!(self.geometry, " {}", corner + 1);
@@ -154,16 +171,57 @@ impl Scan {
         }
     }
 
-    pub(super) fn warnings(&self, mtl_exists: &dyn Fn(&str) -> bool) -> Vec<SceneWarning> {
-        let mut missing = Tally::default();
-        for library in self.libraries.iter().filter(|l| !mtl_exists(l)) {
-            missing.add(|| format!("'{library}'"));
+    /// Reads the material libraries. `library` gives a file's name for messages
+    /// and its bytes, if it can be read.
+    pub(super) fn paint(&self, library: &Library<'_>) -> Paint {
+        let mut paint = Paint::default();
+        for name in &self.libraries {
+            match library(name) {
+                Some((file, bytes)) => paint.materials.read(&bytes, &file),
+                None => paint.missing.add(|| format!("'{name}'")),
+            }
         }
+        paint
+    }
+
+    /// The materials in use, each with its triangles, in order of first use.
+    pub(super) fn parts(&self, paint: &mut Paint) -> Vec<MaterialPart> {
+        let mut of_name: Vec<Vec<u32>> = vec![Vec::new(); self.names.len()];
+        let mut next = 0;
+        for &(triangles, name) in &self.painted {
+            let range = next..next + triangles as u32;
+            next = range.end;
+            if let Some(name) = name {
+                of_name[name].extend(range);
+            }
+        }
+        let mut parts = Vec::new();
+        for (name, triangles) in self.names.iter().zip(of_name) {
+            match paint.materials.get(name) {
+                Some(material) => parts.push(MaterialPart {
+                    material,
+                    triangles,
+                }),
+                None if paint.materials.libraries > 0 => {
+                    paint.unknown.add(|| format!("'{name}'"));
+                }
+                None => {}
+            }
+        }
+        parts.retain(|p| !p.triangles.is_empty());
+        parts
+    }
+
+    pub(super) fn warnings(&self, paint: &Paint) -> Vec<SceneWarning> {
         [
             ("concave-polygons", &self.concave, "polygons that are not convex were cut into fans, which is wrong for them; triangulate the file"),
             ("skipped-faces", &self.skipped, "faces with fewer than three corners were skipped"),
             ("unsupported-statements", &self.unsupported, "statements were ignored; only polygons are read"),
-            ("missing-mtl", &missing, "material libraries are missing; the geometry does not need them"),
+            ("missing-mtl", &paint.missing, "material libraries are missing or cannot be read; their faces are drawn in one material"),
+            ("bad-mtl", &paint.materials.bad, "statements of material libraries are not valid and were left out"),
+            ("limited-mtl", &paint.materials.limited, "reflectances were limited to 0..=1"),
+            ("ignored-maps", &paint.materials.maps, "texture maps were ignored; only Kd, Ks and Ns are used"),
+            ("unknown-material", &paint.unknown, "materials are used that no library defines"),
         ]
         .into_iter()
         .filter(|(_, tally, _)| tally.count > 0)
@@ -176,9 +234,20 @@ impl Scan {
     }
 }
 
+/// Gives a material library's name for messages and its bytes.
+pub(super) type Library<'a> = dyn Fn(&str) -> Option<(String, Vec<u8>)> + 'a;
+
+/// What the material libraries said.
+#[derive(Default)]
+pub(super) struct Paint {
+    materials: Materials,
+    missing: Tally,
+    unknown: Tally,
+}
+
 /// Lines with their numbers from 1, a trailing backslash joining the next line.
 /// Bytes that are not UTF-8 become U+FFFD, so comments may be in any encoding.
-fn logical_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, String)> {
+pub(super) fn logical_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, String)> {
     let mut lines = bytes.split(|b| *b == b'\n').enumerate();
     std::iter::from_fn(move || {
         let (index, first) = lines.next()?;

@@ -5,8 +5,10 @@
 //! number of the shadow volumes at the visible point. Each volume is the sum of
 //! the volumes of its counted triangles (light-facing ones of closed casters,
 //! all of others; [`Counting`]), so the count is the number of counted
-//! triangles that the open segment from the point to the light crosses, without
-//! the triangle the point lies on. Facing is the same f64 expression as in
+//! triangles that the open segment from the point to the light crosses. The
+//! point is seen from the eye's side of its own triangle: that one, and others
+//! with the same corners, count where eye and light are on opposite sides of
+//! it, as on the unlit side of an open sheet. Facing is the same f64 expression as in
 //! [`crate::silhouette`]; everything else is independent of it.
 //!
 //! # Pixels near an edge
@@ -111,6 +113,10 @@ pub struct HardOracle {
     blockers: Bvh,
     /// Surface index of each blocker.
     blocker_surface: Vec<u32>,
+    /// The first surface that has the same three corners as each surface.
+    place: Vec<u32>,
+    /// Number of blockers at each place.
+    blockers_at: Vec<u32>,
 }
 
 impl HardOracle {
@@ -128,10 +134,17 @@ impl HardOracle {
         };
         let (blocker_surface, blockers): (Vec<_>, Vec<_>) =
             surfaces.casters().filter(|(i, _)| counts(*i)).unzip();
+        let place = places(surfaces.corners());
+        let mut blockers_at = vec![0; place.len()];
+        for &surface in &blocker_surface {
+            blockers_at[place[surface as usize] as usize] += 1;
+        }
         Self {
             light,
             near: scene.camera.near,
             surfaces,
+            place,
+            blockers_at,
             blockers: Bvh::new(&blockers),
             blocker_surface,
         }
@@ -165,11 +178,20 @@ impl HardOracle {
             .all(|o| self.blockers_above(surface, &ray, hit.depth + o) == sample.shadow_count)
     }
 
-    /// Counted triangles between the point at `depth` of the eye ray and the
-    /// light, leaving out `surface`, on which the point lies.
+    /// Counted triangles between the eye's side of the point at `depth` of the
+    /// eye ray, on `surface`, and the light.
     fn blockers_above(&self, surface: u32, eye_ray: &Ray, depth: f64) -> u32 {
-        let other = |blocker: u32| self.blocker_surface[blocker as usize] != surface;
-        self.blockers_towards_light(eye_ray.at(depth), SELF_DISTANCE * depth, other)
+        let place = |surface: u32| self.place[surface as usize];
+        let own = place(surface);
+        let other = |blocker: u32| place(self.blocker_surface[blocker as usize]) != own;
+        let point = eye_ray.at(depth);
+        let between = self.blockers_towards_light(point, SELF_DISTANCE * depth, other);
+        let [a, b, c] = self.surfaces.corners()[surface as usize];
+        let normal = (b - a).cross(c - a);
+        let eye_side = normal.dot(eye_ray.at(0.0) - a);
+        let light_side = normal.dot(self.light.towards_from(a));
+        let own_side = (eye_side > 0.0) != (light_side > 0.0);
+        between + u32::from(own_side) * self.blockers_at[own as usize]
     }
 
     /// Counted triangles between any point of space and the light: the winding
@@ -200,6 +222,18 @@ impl HardOracle {
             1.0
         }
     }
+}
+
+/// For each triangle, the first one with the same corners in any order.
+fn places(triangles: &[[DVec3; 3]]) -> Vec<u32> {
+    let key = |t: &[DVec3; 3]| {
+        let mut corners = t.map(|p| p.to_array().map(|c| (c + 0.0).to_bits()));
+        corners.sort_unstable();
+        corners
+    };
+    let mut first = std::collections::BTreeMap::new();
+    let of = |(i, t)| *first.entry(key(t)).or_insert(i as u32);
+    triangles.iter().enumerate().map(of).collect()
 }
 
 /// Which triangles of a caster block, by the rule of its volume.

@@ -74,6 +74,11 @@ impl Surfaces {
         self.first[hit.object as usize] + hit.triangle
     }
 
+    /// Corners of every surface, in drawing order.
+    pub fn corners(&self) -> &[[DVec3; 3]] {
+        &self.corners
+    }
+
     /// Object and triangle of a surface index.
     pub fn name(&self, surface: u32) -> (u32, u32) {
         self.names[surface as usize]

@@ -21,7 +21,7 @@ const MODEL: Material = Material::glossy([0.72, 0.66, 0.58], 0.2, 24.0);
 const GROUND: Material = Material::matt([0.6, 0.62, 0.65]);
 
 /// Reads an OBJ file and frames it with [`frame_model`]; the scene has the
-/// file's name.
+/// file's name, and its faces the materials that they use.
 ///
 /// # Errors
 /// The file cannot be read or holds no valid mesh.
@@ -29,6 +29,9 @@ pub fn load_and_frame(path: &Path) -> Result<Scene, ObjError> {
     let read = obj::load(path, Shading::Flat)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let mut scene = frame_model(&stem, &read.mesh);
+    for object in scene.objects.iter_mut().filter(|o| o.casts) {
+        object.parts.clone_from(&read.parts);
+    }
     scene.warnings.extend(read.warnings);
     Ok(scene)
 }

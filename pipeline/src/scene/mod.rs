@@ -75,6 +75,17 @@ pub struct Object {
     pub receives: bool,
     /// How it is shaded.
     pub material: Material,
+    /// Triangles that are shaded differently; each is in one part at most.
+    pub parts: Vec<MaterialPart>,
+}
+
+/// Triangles of an object with a material of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialPart {
+    /// How they are shaded.
+    pub material: Material,
+    /// Indices into the mesh's triangles, ascending.
+    pub triangles: Vec<u32>,
 }
 
 impl Object {
@@ -86,7 +97,27 @@ impl Object {
             casts: true,
             receives: true,
             material,
+            parts: Vec::new(),
         }
+    }
+
+    /// All triangles by material: those of no part first, then part after part.
+    pub fn painted(&self) -> Vec<MaterialPart> {
+        let count = self.mesh.triangles().len() as u32;
+        let mut own = vec![true; count as usize];
+        for &t in self.parts.iter().flat_map(|p| &p.triangles) {
+            if let Some(own) = own.get_mut(t as usize) {
+                *own = false;
+            }
+        }
+        let rest = MaterialPart {
+            material: self.material,
+            triangles: (0..count).filter(|&t| own[t as usize]).collect(),
+        };
+        std::iter::once(rest)
+            .chain(self.parts.iter().cloned())
+            .filter(|p| !p.triangles.is_empty())
+            .collect()
     }
 
     /// The same object, casting nothing (sheets such as floors).

@@ -41,7 +41,7 @@ use gnomon_shaders::transform::{ClipFromWorld, Points, Surfaces};
 
 use crate::light::HardLight;
 use crate::mesh::{narrow, widen};
-use crate::scene::{Camera, Material, Object, Scene};
+use crate::scene::{Camera, Material, MaterialPart, Object, Scene};
 use crate::technique::{
     Frame, Outputs, ParamInfo, Params, TechniqueError, TextureSource, VisibilityOutput,
 };
@@ -176,9 +176,10 @@ pub(super) enum LitTest {
     StencilZero,
 }
 
-/// Geometry of one object, ready to draw.
+/// Geometry of one object in one material, ready to draw.
 struct SurfaceDraw<'a> {
     object: &'a Object,
+    material: Material,
     vertices: Arc<VertexBuffer>,
     indices: Arc<IndexBuffer>,
     primitive: PrimitiveState,
@@ -201,7 +202,9 @@ impl<'a> SceneDraws<'a> {
             .filter(|o| !o.mesh.triangles().is_empty());
         Self {
             scene,
-            surfaces: drawn.map(|o| SurfaceDraw::new(scene, &view, o)).collect(),
+            surfaces: drawn
+                .flat_map(|o| SurfaceDraw::of_object(scene, &view, o))
+                .collect(),
             view,
             highlights: params.get(SHADING.name) != "lambert",
         }
@@ -212,7 +215,7 @@ impl<'a> SceneDraws<'a> {
         let [r, g, b] = self.scene.background;
         let ambient = self.scene.ambient;
         let draw = |s: &SurfaceDraw<'_>| {
-            let albedo = s.object.material.albedo;
+            let albedo = s.material.albedo;
             let [r, g, b] = [0, 1, 2].map(|i| ambient[i] * albedo[i]);
             s.draw(RenderPipeline {
                 label: "ambient".into(),
@@ -243,7 +246,7 @@ impl<'a> SceneDraws<'a> {
             s.draw(RenderPipeline {
                 label: label.to_owned(),
                 vertex: Surfaces(self.view.clip_from_world).stage(),
-                fragment: Some(self.lit_shader(&s.object.material, light)),
+                fragment: Some(self.lit_shader(&s.material, light)),
                 primitive: s.primitive.clone(),
                 depth_stencil: lit_state(test, s.object.receives),
                 color_targets: vec![ColorTargetState::ADDITIVE],
@@ -278,7 +281,8 @@ impl<'a> SceneDraws<'a> {
 }
 
 impl<'a> SurfaceDraw<'a> {
-    fn new(scene: &Scene, view: &View, object: &'a Object) -> Self {
+    /// A draw for each material; vertices are shared.
+    fn of_object(scene: &Scene, view: &View, object: &'a Object) -> Vec<Self> {
         let shading = object.mesh.shading_vertices();
         let rows = shading.positions.iter().zip(&shading.normals);
         let data = rows
@@ -288,12 +292,21 @@ impl<'a> SurfaceDraw<'a> {
         if crosses_near_plane(scene, object) {
             primitive.clip_planes.push([0.0, 0.0, 1.0, 0.0]);
         }
-        Self {
-            object,
-            vertices: Arc::new(VertexBuffer { data, stride: 6 }),
-            indices: index_buffer(&shading.triangles),
-            primitive,
-        }
+        let vertices = Arc::new(VertexBuffer { data, stride: 6 });
+        let draw = |part: MaterialPart| {
+            let own = part
+                .triangles
+                .iter()
+                .map(|&t| shading.triangles[t as usize]);
+            Self {
+                object,
+                material: part.material,
+                vertices: vertices.clone(),
+                indices: index_buffer(&own.collect::<Vec<_>>()),
+                primitive: primitive.clone(),
+            }
+        };
+        object.painted().into_iter().map(draw).collect()
     }
 
     fn draw(&self, pipeline: RenderPipeline) -> Draw {

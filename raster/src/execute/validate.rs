@@ -7,7 +7,10 @@ use crate::geometry::{GUARD_MAX, GUARD_MIN};
 use crate::gpu::Gpu;
 use crate::state::{BlendFactor, BlendState, DepthStencilState, ScissorRect, Viewport};
 use crate::texture::{Texture, TextureId};
-use crate::{MAX_CLIP_PLANES, MAX_COLOR_ATTACHMENTS, MAX_TEXTURES, MAX_VARYINGS};
+use crate::{
+    MAX_CLIP_PLANES, MAX_COLOR_ATTACHMENTS, MAX_DRAW_VERTICES, MAX_INSTANCES, MAX_TEXTURES,
+    MAX_VARYINGS,
+};
 
 /// Widest line and largest point, in pixels.
 const MAX_WIDTH: f32 = 256.0;
@@ -303,6 +306,10 @@ fn sampler(d: &Draw, s: &Sampler) -> Result<(), Error> {
 }
 
 fn geometry(d: &Draw) -> Result<(), Error> {
+    let what = "the number of vertices or indices";
+    limit(d, what, d.count as usize, MAX_DRAW_VERTICES as usize)?;
+    let what = "the number of instances";
+    limit(d, what, d.instances as usize, MAX_INSTANCES as usize)?;
     let end = u64::from(d.first) + u64::from(d.count);
     let per = d.pipeline.primitive.topology.vertices();
     let primitives = u64::from(d.count / per) * u64::from(d.instances);

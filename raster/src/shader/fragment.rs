@@ -211,10 +211,10 @@ impl<'a, L: Lanes> Fragment<'a, L> {
         Mask::from_bits(self.l, self.live)
     }
 
-    /// Number of live lanes that are not discarded so far.
+    /// Lanes whose texture look-ups are counted: live and not discarded so far.
     #[inline(always)]
-    pub(crate) fn live_count(&self) -> u32 {
-        (self.live & !self.out.discarded).count_ones()
+    pub(crate) fn counted_lanes(&self) -> u16 {
+        self.live & !self.out.discarded
     }
 
     /// Sets all four channels of colour attachment `i`.

@@ -2,9 +2,9 @@
 
 use super::plane::{ColorBlocks, DepthPlane, Plane};
 use super::{HIZ_STALE, Layout};
-use crate::MAX_TEXTURE_SIZE;
 use crate::error::Error;
 use crate::format::{self, Format};
+use crate::{MAX_TEXTURE_BYTES, MAX_TEXTURE_SIZE};
 
 /// Names a texture of a [`crate::Gpu`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -81,13 +81,7 @@ impl Texture {
         let mut layouts = Vec::new();
         let mut planes = Vec::new();
         for mip in 0..desc.mip_levels {
-            let [w, h, d] = mip_size(desc, mip);
-            let layout = Layout::new(w, h);
-            let layers = if desc.dimension == TextureDimension::Cube {
-                6
-            } else {
-                d
-            };
+            let (layout, layers) = level(desc, mip);
             layouts.push(layout);
             planes.push(
                 (0..layers)
@@ -115,16 +109,15 @@ impl Texture {
     }
 
     pub(crate) fn check_subresource(&self, s: Subresource) -> Result<(), Error> {
-        let ok = self
-            .planes
-            .get(s.mip as usize)
-            .is_some_and(|l| (s.layer as usize) < l.len());
-        if ok {
+        let layers = self.planes.get(s.mip as usize).map_or(0, Vec::len);
+        if (s.layer as usize) < layers {
             Ok(())
         } else {
             Err(Error::NoSuchSubresource {
                 texture: self.desc.label.clone(),
                 subresource: s,
+                mip_levels: self.desc.mip_levels,
+                layers,
             })
         }
     }
@@ -361,6 +354,31 @@ fn mip_size(desc: &TextureDescriptor, mip: u32) -> [u32; 3] {
     desc.size.map(|s| (s >> mip.min(31)).max(1))
 }
 
+/// Layout of the images of a level, and their number.
+fn level(desc: &TextureDescriptor, mip: u32) -> (Layout, u32) {
+    let [w, h, d] = mip_size(desc, mip);
+    let layers = if desc.dimension == TextureDimension::Cube {
+        6
+    } else {
+        d
+    };
+    (Layout::new(w, h), layers)
+}
+
+/// Bytes of all levels with their padding, zmin/zmax left out.
+fn storage_bytes(desc: &TextureDescriptor) -> u64 {
+    let texel = if desc.format.is_depth_stencil() {
+        5
+    } else {
+        desc.format.bytes()
+    };
+    let texels = |mip| {
+        let (layout, layers) = level(desc, mip);
+        64 * layout.blocks() as u64 * u64::from(layers)
+    };
+    texel * (0..desc.mip_levels).map(texels).sum::<u64>()
+}
+
 fn validate(desc: &TextureDescriptor) -> Result<(), Error> {
     let [w, h, d] = desc.size;
     let bad = |reason: String| {
@@ -399,6 +417,11 @@ fn validate(desc: &TextureDescriptor) -> Result<(), Error> {
         TextureDimension::D3 if desc.format.is_depth_stencil() => {
             bad("a 3D texture cannot be depth-stencil".into())
         }
-        _ => Ok(()),
+        _ => match storage_bytes(desc) {
+            0..=MAX_TEXTURE_BYTES => Ok(()),
+            bytes => bad(format!(
+                "its storage takes {bytes} bytes, the limit is {MAX_TEXTURE_BYTES}"
+            )),
+        },
     }
 }

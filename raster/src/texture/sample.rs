@@ -492,7 +492,7 @@ impl<L: Lanes> Fragment<'_, L> {
         if !COUNT {
             return;
         }
-        let fetches = u64::from(self.live_count());
+        let fetches = u64::from(self.counted_lanes().count_ones());
         if let (Some(f), Some(t)) = (
             self.events.fetches.get_mut(slot),
             self.events.texels.get_mut(slot),
@@ -500,12 +500,6 @@ impl<L: Lanes> Fragment<'_, L> {
             *f += fetches;
             *t += texels;
         }
-    }
-
-    /// Lanes whose texels are counted.
-    #[inline(always)]
-    fn counted_lanes(&self) -> u16 {
-        self.live().bits()
     }
 }
 

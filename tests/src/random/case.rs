@@ -4,6 +4,7 @@ use gnomon_raster::{Format, LoadOp, StoreOp};
 
 use super::Random;
 use super::draw::random_draw;
+use super::texture;
 use crate::twin::{ColorImage, ColorUse, DepthImage, DepthUse, TwinCase, TwinPass};
 
 const COLOR: [Format; 9] = [
@@ -35,12 +36,14 @@ pub fn random_case(seed: u64) -> TwinCase {
         size,
         color,
         depth,
+        textures: Vec::new(),
         passes: Vec::new(),
     };
     for _ in 0..r.pick(&[1, 1, 2, 3]) {
         let pass = random_pass(&mut r, &case);
         case.passes.push(pass);
     }
+    texture::add(seed, &mut case);
     case
 }
 
@@ -84,7 +87,7 @@ fn color_image(r: &mut Random, pixels: usize) -> ColorImage {
 }
 
 /// Raw channels; no NaN among them.
-fn noise_texel(r: &mut Random, f: Format) -> [u32; 4] {
+pub(super) fn noise_texel(r: &mut Random, f: Format) -> [u32; 4] {
     let half = |r: &mut Random| r.below(0x3d00) | r.below(2) << 15;
     let single = |r: &mut Random| r.float(-0.5, 2.0).to_bits();
     let byte = |r: &mut Random| r.below(256);

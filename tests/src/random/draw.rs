@@ -145,6 +145,9 @@ fn program(r: &mut Random, formats: &[Format]) -> Program {
         uint,
         discard: discard(r),
         depth: depth(r),
+        look_ups: Vec::new(),
+        textures: 0,
+        discards_first: false,
     }
 }
 

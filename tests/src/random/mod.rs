@@ -3,10 +3,14 @@
 mod case;
 mod draw;
 mod geometry;
+mod look_up;
+mod misuse;
 mod state;
+mod texture;
 
 pub use case::random_case;
 pub use geometry::{Screen, grid_triangulation};
+pub use misuse::misuse;
 
 /// PCG-XSH-RR, 64 bits of state, 32 of output.
 #[derive(Clone, Debug)]
@@ -62,6 +66,11 @@ impl Random {
     /// One of the list.
     pub fn pick<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.below(list.len() as u32) as usize]
+    }
+
+    /// A clone of one of the list.
+    pub fn pick_ref<T: Clone>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len() as u32) as usize].clone()
     }
 
     /// An array of what `f` gives.

@@ -9,8 +9,11 @@ use super::color::Target;
 use super::coverage::{ClipPlanes, DrawRect, covers};
 use super::depth::{DepthPlane, Encoding, limit};
 use super::image::Images;
+use super::look_up::{Reads, Values, look_up_all};
+use super::program::Program;
 use super::setup::Triangle;
 use super::stencil::{compare, effective, looks, modifies, operate};
+use super::texture::Bound;
 use super::varying::Varyings;
 
 /// What all blocks of a draw share.
@@ -22,6 +25,7 @@ pub(super) struct DrawContext<'a> {
     pub(super) encoding: Encoding,
     pub(super) depth_range: [f32; 2],
     pub(super) skip: bool,
+    pub(super) textures: Vec<Bound>,
 }
 
 /// What all blocks of a triangle share.
@@ -218,15 +222,11 @@ impl Block<'_> {
         let mut left = Vec::new();
         for mut f in fragments {
             self.counters.fragment_shader_invocations += 1;
-            let out = program.shade(&ScalarFragment {
-                varyings: self.tri.varyings.at(f.x, f.y),
-                x: f.x,
-                y: f.y,
-                depth: self.ctx.encoding.decode(f.depth),
-                w: self.tri.varyings.w(f.x, f.y),
-                front_facing: self.tri.triangle.front,
-                primitive_index: self.tri.triangle.primitive,
-            });
+            let (looked_up, reads) = self.look_ups(program, &f);
+            let out = program.shade(&self.shaded(f.x, f.y), &looked_up);
+            if !(out.discard && program.discards_first) {
+                reads.count(&self.ctx.textures, self.counters);
+            }
             if out.discard {
                 self.counters.fragments.discarded += 1;
                 continue;
@@ -238,6 +238,30 @@ impl Block<'_> {
             left.push(f);
         }
         left
+    }
+
+    /// A pixel as the shader sees it, whether it is a fragment or a helper.
+    fn shaded(&self, x: u32, y: u32) -> ScalarFragment {
+        ScalarFragment {
+            varyings: self.tri.varyings.at(x, y),
+            x,
+            y,
+            depth: self.ctx.encoding.decode(self.tri.depth.at(x, y).0),
+            w: self.tri.varyings.w(x, y),
+            front_facing: self.tri.triangle.front,
+            primitive_index: self.tri.triangle.primitive,
+        }
+    }
+
+    fn look_ups(&self, program: &Program, f: &Fragment) -> (Values, Reads) {
+        if program.look_ups.is_empty() {
+            return (Values::default(), Reads::default());
+        }
+        let (x, y) = (f.x - f.x % 2, f.y - f.y % 2);
+        let quad = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
+        let own = (f.x % 2 + 2 * (f.y % 2)) as usize;
+        let pixels = quad.map(|(x, y)| self.shaded(x, y));
+        look_up_all(&program.look_ups, &self.ctx.textures, &pixels, own)
     }
 
     fn shader_depth(&mut self, z: f32) -> u32 {

@@ -6,6 +6,7 @@ use gnomon_raster::state::{
 use gnomon_raster::{BlockAccess, ClientTraffic, Counters, Format, LoadOp, StoreOp};
 
 use super::program::Program;
+use super::texture::{TextureUse, TwinTexture};
 use gnomon_raster::shader::Interpolation;
 
 /// A colour image before the first pass.
@@ -105,6 +106,8 @@ pub struct TwinDraw {
     pub scissor: Option<ScissorRect>,
     /// The fragment shader.
     pub program: Option<Program>,
+    /// Texture slots of the fragment shader.
+    pub textures: Vec<TextureUse>,
     /// Tier of the GPU's fragment shader.
     pub fragment_tier: Tier,
     /// Tier of the GPU's vertex shader; a table is always read by a closure.
@@ -134,6 +137,7 @@ impl TwinDraw {
             viewport: None,
             scissor: None,
             program: None,
+            textures: Vec::new(),
             fragment_tier: Tier::Lanes,
             vertex_tier: Tier::Lanes,
             vertex_source: VertexSource::Buffer,
@@ -161,6 +165,8 @@ pub struct TwinCase {
     pub color: Vec<ColorImage>,
     /// The depth-stencil image.
     pub depth: Option<DepthImage>,
+    /// Textures that no pass draws into.
+    pub textures: Vec<TwinTexture>,
     /// In order.
     pub passes: Vec<TwinPass>,
 }

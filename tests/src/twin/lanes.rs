@@ -9,6 +9,8 @@ use gnomon_raster::shader::{
 use gnomon_raster::{F32, I32, Lanes, MAX_VARYINGS, Mask, U32};
 
 use super::case::{Tier, TwinDraw, VertexSource};
+use super::lane_look_up::{LaneValues, look_up_all};
+use super::look_up::{MAX_LOOK_UPS, Values};
 use super::program::{ColorSource, DepthSource, Discard, HASH, Program, WILD_COLORS, WILD_DEPTHS};
 use super::vertex;
 
@@ -60,7 +62,9 @@ impl TwinDraw {
         let program = self.program.clone()?;
         Some(match self.fragment_tier {
             Tier::Lanes => LaneProgram(program).into(),
-            Tier::Closure => per_fragment(program.declared(), move |f| program.shade(f)),
+            Tier::Closure => per_fragment(program.declared(), move |f| {
+                program.shade(f, &Values::default())
+            }),
         })
     }
 }
@@ -100,22 +104,49 @@ impl FragmentShader for LaneProgram {
 
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let mut values = [[F32::splat(l, 0.0); 4]; MAX_LOOK_UPS];
+        if self.0.discards_first {
+            self.discard(l, f, &values);
+        }
+        if !self.0.look_ups.is_empty() {
+            values = look_up_all(l, &self.0.look_ups, f);
+        }
         for o in 0..self.0.outputs {
-            if self.0.uint[o] {
+            self.output(l, o, f, &values);
+        }
+        if let Some(d) = self.0.depth {
+            let z = depth(d, l, f, &values);
+            f.set_depth(z);
+        }
+        if !self.0.discards_first {
+            self.discard(l, f, &values);
+        }
+    }
+}
+
+impl LaneProgram {
+    #[inline(always)]
+    fn discard<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>, values: &LaneValues<L>) {
+        if let Some(d) = self.0.discard {
+            let mask = discards(d, l, f, values);
+            f.discard(mask);
+        }
+    }
+
+    #[inline(always)]
+    fn output<L: Lanes>(&self, l: L, o: usize, f: &mut Fragment<'_, L>, values: &LaneValues<L>) {
+        let looked_up = values[self.0.look_up_of(o)];
+        match (self.0.uint[o], self.0.color == ColorSource::LookUps) {
+            (true, true) => f.set_color_uint(o, looked_up[0].to_bits()),
+            (true, false) => {
                 let bits = hash(l, f);
                 f.set_color_uint(o, bits);
-            } else {
+            }
+            (false, true) => f.set_color(o, looked_up),
+            (false, false) => {
                 let rgba = color(&self.0.color, l, o, f);
                 f.set_color(o, rgba);
             }
-        }
-        if let Some(d) = self.0.depth {
-            let z = depth(d, l, f);
-            f.set_depth(z);
-        }
-        if let Some(d) = self.0.discard {
-            let mask = discards(d, l, f);
-            f.discard(mask);
         }
     }
 }
@@ -182,16 +213,17 @@ fn hash<L: Lanes>(l: L, f: &Fragment<'_, L>) -> U32<L> {
 }
 
 #[inline(always)]
-fn depth<L: Lanes>(d: DepthSource, l: L, f: &Fragment<'_, L>) -> F32<L> {
+fn depth<L: Lanes>(d: DepthSource, l: L, f: &Fragment<'_, L>, values: &LaneValues<L>) -> F32<L> {
     match d {
         DepthSource::Same => f.depth(),
         DepthSource::Varying(i, scale) => f.varying(i) * scale,
         DepthSource::Wild(i) => wild(&WILD_DEPTHS, l, 0, f.varying(i), f),
+        DepthSource::LookUp(k) => values[k][0],
     }
 }
 
 #[inline(always)]
-fn discards<L: Lanes>(d: Discard, l: L, f: &Fragment<'_, L>) -> Mask<L> {
+fn discards<L: Lanes>(d: Discard, l: L, f: &Fragment<'_, L>, values: &LaneValues<L>) -> Mask<L> {
     match d {
         Discard::Never => Mask::splat(l, false),
         Discard::Always => Mask::splat(l, true),
@@ -200,5 +232,6 @@ fn discards<L: Lanes>(d: Discard, l: L, f: &Fragment<'_, L>) -> Mask<L> {
             (cells & I32::splat(l, 1)).eq(I32::splat(l, 1))
         }
         Discard::Below(i, threshold) => f.varying(i).lt(F32::splat(l, threshold)),
+        Discard::LookUpBelow(k, threshold) => values[k][0].lt(F32::splat(l, threshold)),
     }
 }

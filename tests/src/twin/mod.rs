@@ -1,4 +1,5 @@
-//! The naive twin: `docs/rasterisation-rules.md`, slowly and obviously.
+//! The naive twin: `docs/rasterisation-rules.md` and `docs/texture-rules.md`,
+//! slowly and obviously.
 //!
 //! One pixel at a time, i64 edge functions, images as plain row-major vectors,
 //! no tiles, no lanes, no bins. It shares only plain data types with
@@ -13,12 +14,15 @@ mod convert;
 mod coverage;
 mod depth;
 mod image;
+mod lane_look_up;
 mod lanes;
+mod look_up;
 mod plane;
 mod program;
 mod render;
 mod setup;
 mod stencil;
+mod texture;
 mod varying;
 mod vertex;
 
@@ -28,5 +32,7 @@ pub use case::{
 };
 pub use convert::{div255_round, f16_bits, unorm8};
 pub use coverage::covered_pixels;
+pub use look_up::{Coordinate, LookUp, LookUpKind, MAX_LOOK_UPS, Origin, TexelAt};
 pub use program::{ColorSource, DepthSource, Discard, Program};
 pub use render::{render, render_with};
+pub use texture::{TextureSource, TextureUse, TwinTexture, depth_image};

@@ -3,6 +3,8 @@
 use gnomon_raster::MAX_COLOR_ATTACHMENTS;
 use gnomon_raster::shader::{FragmentOutputs, ScalarFragment, ScalarFragmentOutput};
 
+use super::look_up::{LookUp, Values};
+
 /// Where colours come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ColorSource {
@@ -16,6 +18,8 @@ pub enum ColorSource {
     Wild,
     /// Column / 255 in red, green and blue, and in alpha unless it is given.
     Columns(Option<f32>),
+    /// What was looked up, in turn.
+    LookUps,
 }
 
 /// Which fragments are thrown away.
@@ -29,6 +33,8 @@ pub enum Discard {
     Checker(u32),
     /// Where a varying is below a threshold.
     Below(usize, f32),
+    /// Where the first channel of a look-up is below a threshold.
+    LookUpBelow(usize, f32),
 }
 
 /// What depth is written.
@@ -40,6 +46,8 @@ pub enum DepthSource {
     Varying(usize, f32),
     /// NaN, infinities, out of range, by position, and a varying.
     Wild(usize),
+    /// The first channel of a look-up.
+    LookUp(usize),
 }
 
 /// A fragment shader.
@@ -49,12 +57,19 @@ pub struct Program {
     pub color: ColorSource,
     /// Number of outputs.
     pub outputs: usize,
-    /// Outputs that are hashed integers of the position instead.
+    /// Outputs that are integers: hashes of the position, or the bits of the first
+    /// channel of what was looked up.
     pub uint: [bool; MAX_COLOR_ATTACHMENTS],
     /// Discards.
     pub discard: Option<Discard>,
     /// Depth.
     pub depth: Option<DepthSource>,
+    /// Texture look-ups; only shaders over lanes have any.
+    pub look_ups: Vec<LookUp>,
+    /// Texture slots declared.
+    pub textures: usize,
+    /// It discards before it looks up.
+    pub discards_first: bool,
 }
 
 /// Every eighth pixel has one of these, or keeps its varying (index 4).
@@ -100,6 +115,9 @@ impl Program {
             uint: [false; MAX_COLOR_ATTACHMENTS],
             discard: None,
             depth: None,
+            look_ups: Vec::new(),
+            textures: 0,
+            discards_first: false,
         }
     }
 
@@ -109,33 +127,47 @@ impl Program {
         FragmentOutputs {
             discards: self.discard.is_some(),
             depth: self.depth.is_some(),
-            textures: 0,
+            textures: self.textures,
         }
     }
 
     /// Shades one fragment.
     #[must_use]
-    pub fn shade(&self, f: &ScalarFragment) -> ScalarFragmentOutput {
+    pub fn shade(&self, f: &ScalarFragment, looked_up: &Values) -> ScalarFragmentOutput {
         let mut out = ScalarFragmentOutput {
-            depth: self.depth.map_or(0.0, |d| shade_depth(d, f)),
-            discard: self.discard.is_some_and(|d| discards(d, f)),
+            depth: self.depth.map_or(0.0, |d| shade_depth(d, f, looked_up)),
+            discard: self.discard.is_some_and(|d| discards(d, f, looked_up)),
             ..ScalarFragmentOutput::default()
         };
         for o in 0..self.outputs {
             out.color[o] = if self.uint[o] {
-                [hash(f); 4]
+                [self.integer(o, f, looked_up); 4]
             } else {
-                self.color(o, f)
+                self.color(o, f, looked_up)
             };
         }
         out
     }
 
-    fn color(&self, o: usize, f: &ScalarFragment) -> [f32; 4] {
+    /// The look-up that output `o` shows.
+    pub(super) fn look_up_of(&self, o: usize) -> usize {
+        o % self.look_ups.len().max(1)
+    }
+
+    fn integer(&self, o: usize, f: &ScalarFragment, looked_up: &Values) -> f32 {
+        if self.color == ColorSource::LookUps {
+            looked_up[self.look_up_of(o)][0]
+        } else {
+            hash(f)
+        }
+    }
+
+    fn color(&self, o: usize, f: &ScalarFragment, looked_up: &Values) -> [f32; 4] {
         match &self.color {
             ColorSource::Constant(c) => c[o],
             ColorSource::Varyings => std::array::from_fn(|c| f.varyings[(4 * o + c) % 6]),
             ColorSource::Geometry => geometry(o, f),
+            ColorSource::LookUps => looked_up[self.look_up_of(o)],
             ColorSource::Columns(alpha) => {
                 let v = f.x as f32 / 255.0;
                 [v, v, v, alpha.unwrap_or(v)]
@@ -181,19 +213,21 @@ fn hash(f: &ScalarFragment) -> f32 {
     f32::from_bits(f.x.wrapping_mul(a) ^ f.y.wrapping_mul(b) ^ f.primitive_index.wrapping_mul(c))
 }
 
-fn shade_depth(d: DepthSource, f: &ScalarFragment) -> f32 {
+fn shade_depth(d: DepthSource, f: &ScalarFragment, looked_up: &Values) -> f32 {
     match d {
         DepthSource::Same => f.depth,
         DepthSource::Varying(i, scale) => f.varyings[i] * scale,
         DepthSource::Wild(i) => wild(&WILD_DEPTHS, 0, f.varyings[i], f),
+        DepthSource::LookUp(k) => looked_up[k][0],
     }
 }
 
-fn discards(d: Discard, f: &ScalarFragment) -> bool {
+fn discards(d: Discard, f: &ScalarFragment, looked_up: &Values) -> bool {
     match d {
         Discard::Never => false,
         Discard::Always => true,
         Discard::Checker(n) => ((f.x >> n) + (f.y >> n)) % 2 == 1,
         Discard::Below(i, threshold) => f.varyings[i] < threshold,
+        Discard::LookUpBelow(k, threshold) => looked_up[k][0] < threshold,
     }
 }

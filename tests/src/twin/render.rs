@@ -9,6 +9,7 @@ use super::coverage::{ClipPlanes, DrawRect};
 use super::depth::{DepthPlane, Encoding, range};
 use super::image::{Images, depth_bytes, encode, texel_bytes};
 use super::setup::{Setup, Triangle};
+use super::texture::Bound;
 use super::varying::Varyings;
 use super::vertex::{distinct, sequence, shade};
 
@@ -140,6 +141,11 @@ fn run_draw(
         encoding: Encoding::of(depth_format),
         depth_range: range(&viewport),
         skip,
+        textures: draw
+            .textures
+            .iter()
+            .map(|t| Bound::new(case, images, t))
+            .collect(),
     };
     let mut counters = Counters::default();
     let first_event = events.len();

@@ -14,7 +14,8 @@ pub(super) fn eye_in_shadow() -> Scene {
 }
 
 /// A side of the slab's volume passes 1 cm beside the eye, through the near
-/// rectangle, with the eye itself in light.
+/// rectangle, with the eye itself in light. z-fail is right, and so is z-pass with
+/// depth clamp; with a clipping near plane it is wrong (`tests/near_plane.rs`).
 pub(super) fn near_plane() -> Scene {
     let objects = vec![floor(8.0), knife_edge(), ball(), crate_box()];
     Scene::new(camera(), vec![overhead_light()], objects)

@@ -50,7 +50,7 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("creature", "biped of 15 overlapping closed parts", creature::scene),
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),
-    entry("adversarial-near-plane", "the near plane cuts a side of a volume: z-pass fails", adversarial::near_plane),
+    entry("adversarial-near-plane", "the near plane cuts a volume: z-pass needs depth clamp", adversarial::near_plane),
     entry("adversarial-nested-300", "300 nested volumes: an 8-bit stencil wraps, 256 alias to lit", adversarial::nested_300),
     entry("adversarial-tiny", "a small still life, coordinates x 1e-4", adversarial::tiny),
     entry("adversarial-huge", "a small still life, coordinates x 1e4", adversarial::huge),

@@ -18,7 +18,7 @@ use crate::shape::on_circle;
 type Built<T> = Result<T, SceneFileError>;
 
 /// Largest image side.
-const MAX_SIDE: u32 = 16_384;
+const MAX_SIDE: u32 = gnomon_raster::MAX_TEXTURE_SIZE;
 
 /// Crease angle where the file gives none, degrees.
 const CREASE: f64 = 40.0;
@@ -159,7 +159,7 @@ fn object(
     index: usize,
     table: &ObjectTable,
 ) -> Built<(Object, Vec<SceneWarning>)> {
-    let (shape, warnings) = shapes::shape(source, folder, &table.mesh)?;
+    let read = shapes::shape(source, folder, &table.mesh)?;
     let degrees = match &table.crease {
         Some(crease) => {
             let rule = "0..=180 (degrees)";
@@ -172,14 +172,18 @@ fn object(
         None => format!("{} {}", table.mesh.kind(), index + 1),
     };
     let place = world_from_local(source, table)?;
-    let mesh = shape
+    let mesh = read
+        .shape
         .transformed(place)
         .into_mesh(Shading::Crease { degrees })
         .map_err(|e| object_error(source, table, &name, &e))?;
     let mut object = Object::new(name, mesh, material(source, table.material.as_ref())?);
     object.casts = table.casts.unwrap_or(!table.mesh.is_sheet());
     object.receives = table.receives.unwrap_or(true);
-    Ok((object, warnings))
+    if table.material.is_none() {
+        object.parts = read.parts;
+    }
+    Ok((object, read.warnings))
 }
 
 /// A mesh that its transform pushed beyond f32, blamed on that transform.

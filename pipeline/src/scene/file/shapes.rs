@@ -7,25 +7,40 @@ use super::check::Source;
 use super::schema::MeshTable;
 use crate::mesh::Shading;
 use crate::obj;
-use crate::scene::SceneWarning;
+use crate::scene::{MaterialPart, SceneWarning};
 use crate::shape::{self, Shape, Terrain};
 
 /// Sides of a round primitive.
 const SEGMENTS: std::ops::RangeInclusive<u32> = 3..=4096;
 
-/// The untransformed shape, with warnings from reading it.
+/// An untransformed shape, and what its file said besides.
+#[derive(Default)]
+pub(super) struct Read {
+    pub(super) shape: Shape,
+    pub(super) parts: Vec<MaterialPart>,
+    pub(super) warnings: Vec<SceneWarning>,
+}
+
+/// The shape that a table asks for.
 pub(super) fn shape(
     source: &Source<'_>,
     folder: &Path,
     table: &MeshTable,
-) -> Result<(Shape, Vec<SceneWarning>), SceneFileError> {
+) -> Result<Read, SceneFileError> {
     match table {
         MeshTable::Obj(path) => {
             let read = obj::load(&folder.join(path.get_ref()), Shading::Flat)
                 .map_err(|e| source.error(path.span(), e.to_string()))?;
-            Ok((Shape::from_mesh(&read.mesh), read.warnings))
+            Ok(Read {
+                shape: Shape::from_mesh(&read.mesh),
+                parts: read.parts,
+                warnings: read.warnings,
+            })
         }
-        primitive => Ok((self::primitive(source, primitive)?, Vec::new())),
+        primitive => Ok(Read {
+            shape: self::primitive(source, primitive)?,
+            ..Read::default()
+        }),
     }
 }
 

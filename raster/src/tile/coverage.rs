@@ -19,8 +19,8 @@ const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const IY: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
 
 /// Block column and row of the blocks of a group, in Morton order.
-pub(super) const GROUP_X: [i32; LANES] = [0, 1, 0, 1, 2, 3, 2, 3, 0, 1, 0, 1, 2, 3, 2, 3];
-pub(super) const GROUP_Y: [i32; LANES] = [0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3, 2, 2, 3, 3];
+const GROUP_X: [i32; LANES] = [0, 1, 0, 1, 2, 3, 2, 3, 0, 1, 0, 1, 2, 3, 2, 3];
+const GROUP_Y: [i32; LANES] = [0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3, 2, 2, 3, 3];
 
 /// Largest edge value that is kept inside a tile: beyond it the sign cannot
 /// change within 128 pixels.
@@ -119,29 +119,74 @@ impl TileEdges {
         let (a, b) = (self.dx[k] * (n - 1), -self.dy[k] * (n - 1));
         (a.min(0) + b.min(0), a.max(0) + b.max(0))
     }
+}
+
+/// The edges on lanes, found once a triangle and tile.
+struct EdgeLanes<L: Lanes> {
+    /// Over the 16 blocks of the group at block (0, 0): smallest value in each.
+    low: [I32<L>; 3],
+    /// From smallest to largest.
+    rise: [i32; 3],
+    /// Over the first packet of a block, relative to its origin.
+    packet: [I32<L>; 3],
+    /// From packet to packet.
+    step: [I32<L>; 3],
+}
+
+impl<L: Lanes> EdgeLanes<L> {
+    #[inline(always)]
+    fn new(l: L, e: &TileEdges) -> Self {
+        let (gx, gy) = (
+            I32::from_array(l, &GROUP_X) << 3,
+            I32::from_array(l, &GROUP_Y) << 3,
+        );
+        let (ix, iy) = (I32::from_array(l, &IX), I32::from_array(l, &IY));
+        let zero = I32::splat(l, 0);
+        let mut lanes = Self {
+            low: [zero; 3],
+            rise: [0; 3],
+            packet: [zero; 3],
+            step: [zero; 3],
+        };
+        for k in 0..3 {
+            let (dx, dy) = (I32::splat(l, e.dx[k]), I32::splat(l, e.dy[k]));
+            let (lo, hi) = e.span(k, 8);
+            lanes.low[k] = (gy * dx - gx * dy) + I32::splat(l, e.e[k] + lo);
+            lanes.rise[k] = hi - lo;
+            lanes.packet[k] = iy * dx - ix * dy;
+            lanes.step[k] = dx + dx;
+        }
+        lanes
+    }
+
+    /// Blocks of the group at (gx, gy) that may hold covered pixels, and those that
+    /// hold nothing else.
+    #[inline(always)]
+    fn classify(&self, l: L, e: &TileEdges, [gx, gy]: [i32; 2]) -> [u16; 2] {
+        let zero = I32::splat(l, 0);
+        let (mut low, mut high) = (zero, zero);
+        for k in 0..3 {
+            let v = self.low[k] + I32::splat(l, 8 * (e.dx[k] * gy - e.dy[k] * gx));
+            low = low | v;
+            high = high | (v + I32::splat(l, self.rise[k]));
+        }
+        [high.ge(zero).bits(), low.ge(zero).bits()]
+    }
 
     /// Pixels of block (bx, by) inside all three edges.
     #[inline(always)]
-    fn mask<L: Lanes>(&self, l: L, bx: i32, by: i32) -> u64 {
-        let (ix, iy) = (I32::from_array(l, &IX), I32::from_array(l, &IY));
-        let mut e: [I32<L>; 3] = each3(
+    fn mask(&self, l: L, e: &TileEdges, bx: i32, by: i32) -> u64 {
+        let mut v: [I32<L>; 3] = each3(
             #[inline(always)]
-            |k| {
-                (iy * I32::splat(l, self.dx[k]) - ix * I32::splat(l, self.dy[k]))
-                    + I32::splat(l, self.at_block(k, bx, by))
-            },
-        );
-        let step: [I32<L>; 3] = each3(
-            #[inline(always)]
-            |k| I32::splat(l, 2 * self.dx[k]),
+            |k| self.packet[k] + I32::splat(l, e.at_block(k, bx, by)),
         );
         let zero = I32::splat(l, 0);
         let mut m = 0;
         for p in 0..PACKETS {
-            let inside = (e[0] | e[1] | e[2]).ge(zero);
+            let inside = (v[0] | v[1] | v[2]).ge(zero);
             m |= u64::from(inside.bits()) << (16 * p);
             for k in 0..3 {
-                e[k] = e[k] + step[k];
+                v[k] = v[k] + self.step[k];
             }
         }
         m
@@ -207,12 +252,13 @@ fn large<L: Lanes, S: BlockStage, const D24: bool>(
         return;
     }
     let e = TileEdges::new(t, env.target.x, env.target.y);
+    let lanes = EdgeLanes::new(l, &e);
     let [bx0, by0, bx1, by1] = [x0 >> 3, y0 >> 3, x1 >> 3, y1 >> 3];
     if t.is_steep() {
         // Groups know fixed-point depth only.
         for by in by0..=by1 {
             for bx in bx0..=bx1 {
-                let m = e.mask(l, bx, by) & w.mask(bx, by);
+                let m = lanes.mask(l, &e, bx, by) & w.mask(bx, by);
                 if m != 0 {
                     outlined(
                         l,
@@ -224,10 +270,19 @@ fn large<L: Lanes, S: BlockStage, const D24: bool>(
         }
         return;
     }
-    for gy in (by0 & !3..=by1).step_by(4) {
-        for gx in (bx0 & !3..=bx1).step_by(4) {
-            group::<L, S, D24>(l, env, t, &e, w, [bx0, by0, bx1, by1], [gx, gy]);
+    // A triangle that fits in 4×4 blocks is one group, wherever they start.
+    let straddles = (bx0 ^ bx1) | (by0 ^ by1) > 3;
+    let aligned = !(straddles && bx1 - bx0 < 4 && by1 - by0 < 4);
+    let start = if aligned { !3 } else { !0 };
+    let mut gy = by0 & start;
+    while gy <= by1 {
+        let mut gx = bx0 & start;
+        while gx <= bx1 {
+            let blocks = [bx0, by0, bx1, by1];
+            group::<L, S, D24>(l, env, t, (&e, &lanes), w, blocks, [gx, gy], aligned);
+            gx += 4;
         }
+        gy += 4;
     }
 }
 
@@ -257,7 +312,8 @@ fn one_block<L: Lanes, S: BlockStage, const D24: bool>(
     S::run::<L, D24>(l, env, t, p, &plane, None, mask);
 }
 
-/// Classifies and runs the 4×4 blocks at (gx, gy).
+/// Classifies and runs the 4×4 blocks at (gx, gy). Where they are `aligned` to
+/// multiples of 4 they are neighbours in memory, and zmin/zmax are asked for all.
 #[inline(always)]
 #[allow(
     clippy::too_many_arguments,
@@ -267,10 +323,11 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
     t: &Triangle,
-    e: &TileEdges,
+    (e, lanes): (&TileEdges, &EdgeLanes<L>),
     w: &Window,
     [bx0, by0, bx1, by1]: [i32; 4],
     [gx, gy]: [i32; 2],
+    aligned: bool,
 ) {
     let bx = I32::from_array(l, &GROUP_X) + I32::splat(l, gx);
     let by = I32::from_array(l, &GROUP_Y) + I32::splat(l, gy);
@@ -278,25 +335,17 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
         & bx.le(I32::splat(l, bx1))
         & by.ge(I32::splat(l, by0))
         & by.le(I32::splat(l, by1));
-    let zero = I32::splat(l, 0);
-    let (x, y) = (bx << 3, by << 3);
-    let mut low = I32::splat(l, 0);
-    let mut high = I32::splat(l, 0);
-    for k in 0..3 {
-        let v = (y * I32::splat(l, e.dx[k]) - x * I32::splat(l, e.dy[k])) + I32::splat(l, e.e[k]);
-        let (lo, hi) = e.span(k, 8);
-        low = low | (v + I32::splat(l, lo));
-        high = high | (v + I32::splat(l, hi));
-    }
-    let alive = inside.bits() & high.ge(zero).bits();
+    let [touched, filled] = lanes.classify(l, e, [gx, gy]);
+    let alive = inside.bits() & touched;
     if alive == 0 {
         return;
     }
+    let (x, y) = (bx << 3, by << 3);
     let unclipped = x.ge(I32::splat(l, w.x0))
         & y.ge(I32::splat(l, w.y0))
         & x.le(I32::splat(l, w.x1 - 7))
         & y.le(I32::splat(l, w.y1 - 7));
-    let full = alive & low.ge(zero).bits() & unclipped.bits();
+    let full = alive & filled & unclipped.bits();
 
     let first = morton(gx as u32, gy as u32);
     let depth = env.config.needs_depth.then(
@@ -304,13 +353,14 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
         || GroupDepth::<L, D24>::new(l, t, env.target, [gx, gy], env.config.depth_range),
     );
     let mut decided = Decisions::default();
-    if env.config.hiz
+    if aligned
+        && env.config.hiz
         && let Some(d) = &depth
     {
         decided = block::ask_group(l, env, first, alive, d);
     }
     let mut left = alive;
-    if S::WHOLE_GROUPS && !t.is_cut_far() {
+    if aligned && S::WHOLE_GROUPS && !t.is_cut_far() {
         left &= !block::run_group(l, env, env.config.face(t), first, full, &decided);
     }
     let bases = depth.map(
@@ -327,7 +377,7 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
             let inside = outlined(
                 l,
                 #[inline(always)]
-                || e.mask(l, bx, by),
+                || lanes.mask(l, e, bx, by),
             );
             inside & w.mask(bx, by)
         };
@@ -338,7 +388,7 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
             Some(b) => DepthBlock::<D24>::with_base(t, b[i], env.config.depth_range),
             None => DepthBlock::UNUSED,
         };
-        let decision: Option<Decision> = env.config.hiz.then(
+        let decision: Option<Decision> = (aligned && env.config.hiz).then(
             #[inline(always)]
             || decided.of(i),
         );

@@ -1,6 +1,5 @@
 //! Depth of fragments, block ranges and the depth comparison (rules §5, §7).
 
-use super::coverage::{GROUP_X, GROUP_Y};
 use super::target::TileTarget;
 use crate::format::D24_MAX;
 use crate::geometry::{D24_BASE_LIMIT, D24_FRACTION, D24_SCALE, Triangle};
@@ -253,6 +252,14 @@ impl<const D24: bool> DepthBlock<D24> {
     }
 }
 
+/// Pixels from the group's origin to each block's.
+const GROUP_DX: [f64; LANES] = [
+    0., 8., 0., 8., 16., 24., 16., 24., 0., 8., 0., 8., 16., 24., 16., 24.,
+];
+const GROUP_DY: [f64; LANES] = [
+    0., 0., 8., 8., 0., 0., 8., 8., 16., 16., 24., 24., 16., 16., 24., 24.,
+];
+
 /// The same for the 16 blocks of a group.
 pub(super) struct GroupDepth<L: Lanes, const D24: bool> {
     base: I32<L>,
@@ -270,10 +277,11 @@ impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
         [gx, gy]: [i32; 2],
         range: [i32; 2],
     ) -> Self {
-        let x = (I32::from_array(l, &GROUP_X) << 3) + I32::splat(l, target.x as i32 + 8 * gx);
-        let y = (I32::from_array(l, &GROUP_Y) << 3) + I32::splat(l, target.y as i32 + 8 * gy);
-        let dx = (F64::from_f32(x.to_f32()) + 0.5) - f64::from(t.x) * (1.0 / 256.0);
-        let dy = (F64::from_f32(y.to_f32()) + 0.5) - f64::from(t.y) * (1.0 / 256.0);
+        // Exact in any order: numbers of 24 bits with 8 behind the point.
+        let x = f64::from(target.x as i32 + 8 * gx) + 0.5 - f64::from(t.x) * (1.0 / 256.0);
+        let y = f64::from(target.y as i32 + 8 * gy) + 0.5 - f64::from(t.y) * (1.0 / 256.0);
+        let dx = F64::from_array(l, &GROUP_DX) + x;
+        let dy = F64::from_array(l, &GROUP_DY) + y;
         let along = F64::splat(l, t.zx) * dx + F64::splat(l, t.zy) * dy;
         let z = (F64::splat(l, f64::from(t.z)) + along) + t.bias;
         let base = if D24 {

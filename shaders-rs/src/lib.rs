@@ -2,11 +2,16 @@
 //!
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
+//! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
 //!
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
 //! that uses it decides targets, blending and tests.
 
+pub mod coverage;
+pub mod coverage_table;
+pub mod soft_volumes;
 pub mod surface;
 pub mod transform;
 mod vector;
@@ -26,7 +31,11 @@ macro_rules! stages {
     )+ };
 }
 stages!(VertexStage:
-    transform::Points, transform::HomogeneousPoints, transform::Surfaces, transform::FullScreen);
+    transform::Points, transform::HomogeneousPoints, transform::Surfaces, transform::FullScreen,
+    transform::Facets, soft_volumes::HardQuads, soft_volumes::EyeCount);
 stages!(FragmentStage:
     surface::Constant, surface::Lambert, surface::Phong, surface::AmbientWithPosition,
-    surface::Shadowed<surface::Lambert>, surface::Shadowed<surface::Phong>);
+    surface::Shadowed<surface::Lambert>, surface::Shadowed<surface::Phong>,
+    soft_volumes::HardCount, soft_volumes::Resolve,
+    soft_volumes::Penumbra<soft_volumes::ExactCoverage>,
+    soft_volumes::Penumbra<coverage_table::CoverageTable>);

@@ -7,6 +7,7 @@
 //! that an earlier pass left in a texture; [`AmbientWithPosition`] leaves the
 //! positions that such a pass works with.
 
+use gnomon_raster::math::{dot3, length};
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, I32, Lanes};
@@ -24,24 +25,64 @@ impl FragmentShader for Constant {
     }
 }
 
-/// Ambient light in attachment 0, and in attachment 1 the world-space position
-/// (varyings 3..6 of [`crate::transform::Surfaces`]) with w 1 where shadow may
-/// fall and 0 where it may not.
+/// Directions of rays through pixels: `first + x · right + y · down` at (x, y)
+/// pixels from the top left corner; not normalised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelRays {
+    /// Where rays start, relative to the origin of positions.
+    pub eye: [f32; 3],
+    /// Direction through the top left corner of the image.
+    pub first: [f32; 3],
+    /// Change to the next column.
+    pub right: [f32; 3],
+    /// Change to the next row.
+    pub down: [f32; 3],
+}
+
+/// Ambient light in attachment 0, and in attachment 1 the world-space position,
+/// with w 1 where shadow may fall and 0 where it may not. Varyings are those of
+/// [`crate::transform::Facets`].
+///
+/// Vertices are snapped to 1/256 pixel, and interpolated positions with them; at
+/// penumbrae of a few pixels that is visible in the last digits. So the position
+/// is where the pixel's ray meets the facet's plane, and the interpolated one only
+/// where the facet is seen edge on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientWithPosition {
     /// The colour.
     pub ambient: [f32; 4],
     /// Whether shadow falls on the surface.
     pub receives: bool,
+    /// The camera.
+    pub rays: PixelRays,
 }
+
+/// Cosine between ray and facet, below which positions are interpolated.
+const EDGE_ON: f32 = 1e-3;
 
 impl FragmentShader for AmbientWithPosition {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         Constant(self.ambient).shade(l, f);
-        let (_, V3([x, y, z])) = inputs(f);
+        let (x, y) = (f.x(), f.y());
+        let rays = &self.rays;
+        let direction = each3(
+            #[inline(always)]
+            |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
+        );
+        let normal = each3(
+            #[inline(always)]
+            |i| f.varying(3 + i),
+        );
+        let slope = dot3(normal, direction);
+        let steep = slope.abs().gt(length(direction) * EDGE_ON);
+        let distance = f.varying(6) / slope;
+        let [px, py, pz] = each3(
+            #[inline(always)]
+            |i| steep.select_f32(direction[i] * distance + rays.eye[i], f.varying(i)),
+        );
         let w = if self.receives { 1.0 } else { 0.0 };
-        f.set_color(1, [x, y, z, F32::splat(l, w)]);
+        f.set_color(1, [px, py, pz, F32::splat(l, w)]);
     }
 }
 

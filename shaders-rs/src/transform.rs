@@ -69,6 +69,29 @@ impl VertexShader for Surfaces {
     }
 }
 
+/// Attributes x, y, z and a facet's plane: unit normal and distance from the eye.
+/// Varyings: position in 0..3, the plane in 3..7, flat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets(pub ClipFromWorld);
+
+impl VertexShader for Facets {
+    fn varyings(&self) -> &[Interpolation] {
+        const P: Interpolation = Interpolation::Perspective;
+        const F: Interpolation = Interpolation::Flat;
+        &[P, P, P, F, F, F, F]
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        for i in 0..7 {
+            let attribute = v.attribute(i);
+            v.set_varying(i, attribute);
+        }
+        let [x, y, z] = [v.attribute(0), v.attribute(1), v.attribute(2)];
+        v.set_position(self.0.apply([x, y, z, F32::splat(l, 1.0)]));
+    }
+}
+
 /// Three vertices without data that cover the whole viewport at depth 0; no
 /// varyings.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,7 +18,7 @@ pub use params::{ParamInfo, Params};
 
 use crate::caster::RefusedCaster;
 use crate::scene::Scene;
-use crate::techniques::{ShadowVolumes, Unshadowed};
+use crate::techniques::{ShadowVolumes, SoftShadowVolumes, Unshadowed};
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
 pub trait TextureSource {
@@ -81,7 +81,7 @@ pub trait Technique: Sync {
 
 /// All techniques, in the order in which they are listed.
 pub fn techniques() -> &'static [&'static dyn Technique] {
-    static LIST: &[&dyn Technique] = &[&Unshadowed, &ShadowVolumes];
+    static LIST: &[&dyn Technique] = &[&Unshadowed, &ShadowVolumes, &SoftShadowVolumes];
     LIST
 }
 
@@ -156,6 +156,18 @@ pub enum TechniqueError {
         given: usize,
         /// Number of lights of the scene.
         count: usize,
+    },
+    /// A light that the technique cannot use.
+    #[error("technique '{technique}' cannot use light {light}: {why}; it takes {valid}")]
+    UnsuitableLight {
+        /// The technique.
+        technique: &'static str,
+        /// Number of the light.
+        light: usize,
+        /// What is wrong with it.
+        why: String,
+        /// The lights taken.
+        valid: &'static str,
     },
     /// A caster that is not closed.
     #[error(transparent)]

@@ -3,8 +3,11 @@
 mod near_pyramid;
 mod passes;
 mod shadow_volumes;
+mod soft;
+mod soft_shadow_volumes;
 mod unshadowed;
 mod visibility;
 
 pub(crate) use shadow_volumes::ShadowVolumes;
+pub(crate) use soft_shadow_volumes::SoftShadowVolumes;
 pub(crate) use unshadowed::Unshadowed;

@@ -36,8 +36,8 @@ use gnomon_raster::{
     ColorAttachment, CommandList, DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp,
     RenderPass, RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
 };
-use gnomon_shaders::surface::{AmbientWithPosition, Constant, Lambert, Phong};
-use gnomon_shaders::transform::{ClipFromWorld, Points, Surfaces};
+use gnomon_shaders::surface::{AmbientWithPosition, Constant, Lambert, Phong, PixelRays};
+use gnomon_shaders::transform::{ClipFromWorld, Facets, Points, Surfaces};
 
 use super::visibility::{Positions, VisibilityTexture, attachment, binding};
 use crate::light::HardLight;
@@ -236,19 +236,24 @@ impl<'a> SceneDraws<'a> {
         targets: &Targets,
         positions: &Positions,
     ) -> RenderPass {
+        let rays = self.view.pixel_rays();
         let draw = |s: &SurfaceDraw<'_>| {
             let shader = AmbientWithPosition {
                 ambient: s.ambient(self.scene.ambient),
                 receives: s.object.receives,
+                rays,
             };
-            s.draw(RenderPipeline {
-                label: "ambient".into(),
-                vertex: Surfaces(self.view.clip_from_world).stage(),
-                fragment: Some(shader.stage()),
-                primitive: s.primitive.clone(),
-                depth_stencil: DepthStencilState::opaque(),
-                color_targets: vec![ColorTargetState::OPAQUE; 2],
-            })
+            s.draw_facets(
+                &self.view,
+                RenderPipeline {
+                    label: "ambient".into(),
+                    vertex: Facets(self.view.clip_from_world).stage(),
+                    fragment: Some(shader.stage()),
+                    primitive: s.primitive.clone(),
+                    depth_stencil: DepthStencilState::opaque(),
+                    color_targets: vec![ColorTargetState::OPAQUE; 2],
+                },
+            )
         };
         let mut pass = self.ambient_pass(targets);
         pass.color
@@ -346,6 +351,35 @@ impl<'a> SurfaceDraw<'a> {
         [r, g, b, 1.0]
     }
 
+    /// Each triangle with its plane, for [`Facets`].
+    fn draw_facets(&self, view: &View, pipeline: RenderPipeline) -> Draw {
+        let stride = self.vertices.stride;
+        let corner = |i: u32| {
+            let at = i as usize * stride;
+            [0, 1, 2].map(|k| self.vertices.data[at + k])
+        };
+        let mut data = Vec::new();
+        for triangle in self.indices.indices().chunks_exact(3) {
+            let corners = [0, 1, 2].map(|k| corner(triangle[k]));
+            let [a, b, c] = corners.map(widen);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let distance = normal.dot(a - view.eye()) as f32;
+            for p in corners {
+                data.extend(p);
+                data.extend(narrow(normal));
+                data.push(distance);
+            }
+        }
+        let vertices = Arc::new(VertexBuffer { data, stride: 7 });
+        let indices = (0..vertices.len() as u32).collect();
+        Draw::indexed(
+            &self.object.name,
+            &Arc::new(pipeline),
+            &vertices,
+            &Arc::new(IndexBuffer::new(indices)),
+        )
+    }
+
     fn draw(&self, pipeline: RenderPipeline) -> Draw {
         Draw::indexed(
             &self.object.name,
@@ -378,6 +412,8 @@ pub(super) struct View {
     pub(super) clip_from_world: ClipFromWorld,
     /// In world space; world-space inputs of shaders are relative to it.
     origin: DVec3,
+    camera: Camera,
+    size: [u32; 2],
 }
 
 impl View {
@@ -392,6 +428,32 @@ impl View {
         Self {
             clip_from_world: ClipFromWorld(moved.clip_from_world(aspect)),
             origin,
+            camera: *camera,
+            size: [width, height],
+        }
+    }
+
+    /// The camera, world space.
+    pub(super) fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The eye relative to the origin.
+    pub(super) fn eye(&self) -> DVec3 {
+        self.relative(self.camera.eye)
+    }
+
+    fn pixel_rays(&self) -> PixelRays {
+        let [width, height] = self.size;
+        let rays = self.camera.eye_rays(width, height);
+        let first = rays.direction(0.0, 0.0);
+        let across = rays.direction(f64::from(width), 0.0) - first;
+        let down = rays.direction(0.0, f64::from(height)) - first;
+        PixelRays {
+            eye: narrow(self.eye()),
+            first: narrow(first),
+            right: narrow(across / f64::from(width)),
+            down: narrow(down / f64::from(height)),
         }
     }
 

@@ -1,0 +1,7 @@
+//! Parts of soft shadow volumes: silhouette edges with their hard planes, lights
+//! as shaders project on them, wedges as draws, and coverage tables.
+
+pub(super) mod edges;
+pub(super) mod light;
+pub(super) mod table;
+pub(super) mod wedges;

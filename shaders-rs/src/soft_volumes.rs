@@ -20,7 +20,7 @@ use crate::transform::{ClipFromWorld, FullScreen};
 /// The first `N` textures at the fragment's own pixel; zero beyond `count`. One
 /// loop, so that the look-up is compiled once.
 #[inline(always)]
-fn own_texels<L: Lanes, const N: usize>(
+pub(crate) fn own_texels<L: Lanes, const N: usize>(
     l: L,
     f: &mut Fragment<'_, L>,
     count: usize,
@@ -35,7 +35,11 @@ fn own_texels<L: Lanes, const N: usize>(
 
 /// A position relative to `centre`, and whether shadow may fall on it.
 #[inline(always)]
-fn receiver<L: Lanes>(l: L, texel: [F32<L>; 4], centre: [f32; 3]) -> ([F32<L>; 3], Mask<L>) {
+pub(crate) fn receiver<L: Lanes>(
+    l: L,
+    texel: [F32<L>; 4],
+    centre: [f32; 3],
+) -> ([F32<L>; 3], Mask<L>) {
     let from = each3(
         #[inline(always)]
         |i| texel[i] - centre[i],
@@ -329,7 +333,7 @@ impl FragmentShader for Resolve {
     }
 }
 
-fn reads(textures: usize) -> FragmentOutputs {
+pub(crate) fn reads(textures: usize) -> FragmentOutputs {
     FragmentOutputs {
         textures,
         ..FragmentOutputs::default()

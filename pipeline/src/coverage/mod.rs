@@ -246,6 +246,12 @@ impl Projection {
     }
 }
 
+/// Share of a square between the rays from its centre through two points, on the
+/// side where they are less than half a turn apart; for look-up tables.
+pub(crate) fn square_share(p: DVec2, q: DVec2) -> f64 {
+    square::sector(p, q) / 4.0
+}
+
 /// Whether a receiver is on the umbra side of the edge's hard shadow quad: the
 /// one predicate for shadow count, sign of the coverage, and wedge halves.
 /// Receivers on the plane, and edges that point at the centre, count as outside.

@@ -18,7 +18,7 @@ pub use params::{ParamInfo, Params};
 
 use crate::caster::RefusedCaster;
 use crate::scene::Scene;
-use crate::techniques::{ShadowVolumes, SoftShadowVolumes, Unshadowed};
+use crate::techniques::{ShadowVolumes, SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed};
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
 pub trait TextureSource {
@@ -81,7 +81,12 @@ pub trait Technique: Sync {
 
 /// All techniques, in the order in which they are listed.
 pub fn techniques() -> &'static [&'static dyn Technique] {
-    static LIST: &[&dyn Technique] = &[&Unshadowed, &ShadowVolumes, &SoftShadowVolumes];
+    static LIST: &[&dyn Technique] = &[
+        &Unshadowed,
+        &ShadowVolumes,
+        &SoftShadowVolumes,
+        &SoftShadowVolumesOptimised,
+    ];
     LIST
 }
 

@@ -18,40 +18,36 @@
 //! * Wedges only choose pixels. The shader gives exactly 0 outside the penumbra,
 //!   so `wedge` and `skip` change counters and no bit.
 
-use std::sync::Arc;
-
-use glam::DVec4;
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
-    Draw, Format, IndexBuffer, LoadOp, RenderPass, RenderPipeline, TextureBinding,
-    TextureDescriptor, TextureId, VertexBuffer,
+    Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureBinding, TextureDescriptor, TextureId,
 };
 use gnomon_shaders::coverage::Edge;
 use gnomon_shaders::coverage_table::CoverageTable;
-use gnomon_shaders::soft_volumes::{
-    CountTo, CoverTo, ExactCoverage, EyeCount, HardCount, HardPlane, HardQuads, Penumbra, Resolve,
-};
+use gnomon_shaders::soft_volumes::{CountTo, CoverTo, ExactCoverage, HardPlane, Penumbra, Resolve};
 use gnomon_shaders::transform::FullScreen;
 
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::shadow_volumes::{OPEN_CASTERS, SKIP, policy};
-use super::soft::edges::{Casters, Silhouettes, SoftEdge};
+use super::soft::count::Counting;
+use super::soft::edges::{Casters, Silhouettes};
 use super::soft::light::{LightSide, SoftLight};
 use super::soft::table;
-use super::soft::wedges::{AreaStatistics, Note, WedgeArea, WedgePipeline};
+use super::soft::wedges::{
+    AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
+};
 use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
-use crate::mesh::narrow;
 use crate::scene::Scene;
 use crate::technique::{
     Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
 };
-use crate::wedge::{Construction, Wedge, WedgeStatistics};
+use crate::wedge::{Wedge, WedgeStatistics};
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumes;
 
-const WEDGE: ParamInfo = ParamInfo {
+pub(super) const WEDGE: ParamInfo = ParamInfo {
     name: "wedge",
     default: "exact",
     valid: "exact|paper3|paper4",
@@ -100,7 +96,7 @@ const COPY_BACK: ParamInfo = ParamInfo {
     summary: "with r32f: no float blending, each wedge reads, writes aside and copies back",
 };
 
-const SPHERE: ParamInfo = ParamInfo {
+pub(super) const SPHERE: ParamInfo = ParamInfo {
     name: "sphere",
     default: "seen",
     valid: "seen|equator",
@@ -331,75 +327,21 @@ impl Volumes<'_> {
             CountTo::Visibility
         };
         let clear = if eight_bits { [0.0; 4] } else { [1.0; 4] };
-        let targets = self.buffers.targets();
-        let mut draws = Vec::new();
-        if silhouettes.eye_count != 0 {
-            let vertex = EyeCount(silhouettes.eye_count as f32).stage();
-            let pipeline = self.counting("eye", vertex, self.hard_count(to));
-            let textures = vec![binding(self.positions.texture)];
-            draws.push(full_screen(pipeline, textures));
-        }
-        draws.extend(self.quads(&silhouettes.edges, to));
-        let color = targets.iter().map(|t| attachment(*t, LoadOp::Clear(clear)));
+        let counting = Counting {
+            view: self.view,
+            positions: self.positions,
+            centre: self.light.centre,
+            to,
+        };
+        let targets = self.buffers.targets().into_iter();
         RenderPass {
             label,
-            color: color.collect(),
+            color: targets
+                .map(|t| attachment(t, LoadOp::Clear(clear)))
+                .collect(),
             depth_stencil: None,
-            draws,
+            draws: counting.draws(silhouettes),
         }
-    }
-
-    fn counting(
-        &self,
-        label: &str,
-        vertex: gnomon_raster::shader::VertexStage,
-        fragment: FragmentStage,
-    ) -> RenderPipeline {
-        RenderPipeline {
-            label: label.to_owned(),
-            vertex,
-            fragment: Some(fragment),
-            primitive: passes::clamped(),
-            depth_stencil: DepthStencilState::default(),
-            color_targets: vec![ColorTargetState::ADDITIVE; self.buffers.targets().len()],
-        }
-    }
-
-    fn hard_count(&self, to: CountTo) -> FragmentStage {
-        let centre = narrow(self.view.relative(self.light.centre));
-        HardCount { centre, to }.stage()
-    }
-
-    /// All quads in one draw.
-    fn quads(&self, edges: &[SoftEdge], to: CountTo) -> Option<Draw> {
-        let mut data = Vec::new();
-        let mut indices = Vec::new();
-        for edge in edges.iter().filter(|e| e.normal != [0.0; 3]) {
-            let first = (data.len() / 8) as u32;
-            let [e0, e1] = edge.ends.map(|e| self.view.relative(e).extend(1.0));
-            let [d0, d1] = edge.away(self.light.centre).map(|d| d.extend(0.0));
-            for v in [e0, e1, d0, d1] {
-                data.extend(DVec4::to_array(&v).map(|c| c as f32));
-                data.extend(edge.normal);
-                data.push(if edge.eye_inside { 1.0 } else { 0.0 });
-            }
-            indices.extend([1, 0, 2, 1, 2, 3].map(|i| first + i));
-        }
-        if indices.is_empty() {
-            return None;
-        }
-        let vertex = HardQuads(self.view.clip_from_world).stage();
-        let pipeline = self.counting("quads", vertex, self.hard_count(to));
-        let vertices = VertexBuffer { data, stride: 8 };
-        Some(Draw {
-            textures: vec![binding(self.positions.texture)],
-            ..Draw::indexed(
-                "quads",
-                &Arc::new(pipeline),
-                &Arc::new(vertices),
-                &Arc::new(IndexBuffer::new(indices)),
-            )
-        })
     }
 
     /// Pass 2: one wedge after the other; copying back, two passes for each.
@@ -409,11 +351,7 @@ impl Volumes<'_> {
         silhouettes: &Silhouettes,
         warnings: &mut Vec<Warning>,
     ) -> Vec<RenderPass> {
-        let construction = match self.params.get(WEDGE.name) {
-            "paper3" => Construction::BoundingSphere,
-            "paper4" => Construction::Tight,
-            _ => Construction::Exact,
-        };
+        let construction = construction(self.params);
         let mut statistics = WedgeStatistics::default();
         let mut areas = AreaStatistics::default();
         let mut passes = Vec::new();
@@ -421,7 +359,7 @@ impl Volumes<'_> {
         for side in &self.light.sides {
             for edge in &silhouettes.edges {
                 let parts = Wedge::of_edge(construction, &side.area, edge.ends, &mut statistics);
-                for part in parts.iter().filter(|_| edge.normal != [0.0; 3]) {
+                for part in parts.iter().filter(|_| edge.has_plane()) {
                     let area =
                         WedgeArea::new(self.view, construction, &side.area, part.edge, &mut areas);
                     let shader = |to| {
@@ -435,7 +373,7 @@ impl Volumes<'_> {
                 }
             }
         }
-        warnings.extend(wedge_warnings(label, &statistics, &areas));
+        warnings.extend(warnings_of(label, &statistics, &areas));
         if self.buffers.aside.is_none() {
             passes.push(self.pass(label, self.buffers.targets(), LoadOp::Load, draws));
         }
@@ -519,38 +457,4 @@ impl Volumes<'_> {
         }
         slots
     }
-}
-
-/// What wedge construction met, for people.
-fn wedge_warnings(
-    label: &str,
-    wedges: &WedgeStatistics,
-    areas: &AreaStatistics,
-) -> impl Iterator<Item = Warning> {
-    let counted = [
-        (
-            "edges-touching-light",
-            wedges.touching_light,
-            "silhouette edges touch the light; their wedges are half-spaces",
-        ),
-        (
-            "wedges-built-exactly",
-            wedges.aimed_at_centre + wedges.meets_light,
-            "wedges are not defined as asked for, and built exactly instead",
-        ),
-        (
-            "wedges-whole-screen",
-            areas.whole_screen,
-            "wedges are no single mesh, and drawn over the whole screen",
-        ),
-    ];
-    let label = label.to_owned();
-    counted
-        .into_iter()
-        .filter(|(_, count, _)| *count != 0)
-        .map(move |(code, count, what)| Warning {
-            code,
-            count: count as usize,
-            message: format!("{label}: {count} {what}"),
-        })
 }

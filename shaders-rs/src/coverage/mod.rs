@@ -33,6 +33,18 @@ pub enum Image {
     Disc,
 }
 
+impl Image {
+    /// Its area.
+    #[inline(always)]
+    #[must_use]
+    pub fn area(self) -> f32 {
+        match self {
+            Self::Square => 4.0,
+            Self::Disc => core::f32::consts::PI,
+        }
+    }
+}
+
 /// An edge in homogeneous light coordinates.
 #[derive(Clone, Copy)]
 pub struct Projected<L: Lanes> {
@@ -258,11 +270,11 @@ pub fn clip<L: Lanes>(l: L, image: Image, projected: &Projected<L>) -> Segment<L
 pub fn covered<L: Lanes>(l: L, image: Image, segment: &Segment<L>) -> F32<L> {
     let [p, q] = segment.ends;
     let cross = (p[0] * q[1] - p[1] * q[0]).abs();
-    let (sector, area) = match image {
-        Image::Square => (square::sector(l, p, q), 4.0),
-        Image::Disc => (round::sector(p, q), core::f32::consts::PI),
+    let sector = match image {
+        Image::Square => square::sector(l, p, q),
+        Image::Disc => round::sector(p, q),
     };
     let zero = F32::splat(l, 0.0);
-    let share = ((sector - cross * 0.5) / area).max(zero);
+    let share = ((sector - cross * 0.5) / image.area()).max(zero);
     segment.some.select_f32(share, zero)
 }

@@ -12,7 +12,6 @@ use crate::light::HardLight;
 use crate::mesh::narrow;
 use crate::scene::{Camera, Scene};
 use crate::silhouette::{Orientation, Silhouette, light_facing};
-use crate::silhouette_loops::SilhouetteLoops;
 use crate::wedge::hard_plane;
 use crate::winding::volume_winding;
 
@@ -27,13 +26,11 @@ pub(crate) struct SoftEdge {
     pub(crate) eye_inside: bool,
 }
 
-/// Silhouettes of all casters.
+/// Silhouettes of one or all casters.
 #[derive(Default)]
 pub(crate) struct Silhouettes {
-    /// Edges, loop after loop.
+    /// Edges, caster after caster.
     pub(crate) edges: Vec<SoftEdge>,
-    /// Where each loop ends in `edges`.
-    pub(crate) loop_ends: Vec<usize>,
     /// How many casters hide the light's centre from the eye.
     pub(crate) eye_count: i32,
 }
@@ -58,12 +55,21 @@ impl<'a> Casters<'a> {
         })
     }
 
-    /// Silhouettes seen from `centre`.
+    /// Silhouettes seen from `centre`, of all casters together.
     pub(crate) fn silhouettes(&self, centre: DVec3) -> Silhouettes {
+        let mut all = Silhouettes::default();
+        for caster in self.each(centre) {
+            all.edges.extend(caster.edges);
+            all.eye_count += caster.eye_count;
+        }
+        all
+    }
+
+    /// Silhouettes seen from `centre`, caster by caster.
+    pub(crate) fn each(&self, centre: DVec3) -> Vec<Silhouettes> {
         let light = HardLight::Point(centre);
         let eye = beside_eye(&self.scene.camera);
-        let mut all = Silhouettes::default();
-        for (number, caster) in &self.examined {
+        let of = |(number, caster): &(usize, Caster)| {
             let mesh = &self.scene.objects[*number].mesh;
             let facing = light_facing(mesh, light);
             let orientation = match caster.counting(mesh, light) {
@@ -71,25 +77,16 @@ impl<'a> Casters<'a> {
                 Counting::AllTriangles => Orientation::generalised(&facing),
             };
             let silhouette = Silhouette::new(mesh, caster.adjacency(), &orientation);
-            all.eye_count += volume_winding(&caster.volume(mesh, light), eye);
             let point = |i: u32| mesh.position(i);
-            let edge_of = |&[a, b]: &[u32; 2]| SoftEdge::new([point(a), point(b)], centre, eye);
-            match SilhouetteLoops::new(&silhouette) {
-                Ok(split) => {
-                    for edges in &split.loops {
-                        let each = edges.iter().map(|e| &silhouette.edges[*e as usize]);
-                        all.edges.extend(each.map(edge_of));
-                        all.loop_ends.push(all.edges.len());
-                    }
-                }
-                // Silhouettes balance by construction; without loops they are one.
-                Err(_) => {
-                    all.edges.extend(silhouette.edges.iter().map(edge_of));
-                    all.loop_ends.push(all.edges.len());
-                }
+            let edges = silhouette.edges.iter();
+            Silhouettes {
+                edges: edges
+                    .map(|&[a, b]| SoftEdge::new([point(a), point(b)], centre, eye))
+                    .collect(),
+                eye_count: volume_winding(&caster.volume(mesh, light), eye),
             }
-        }
-        all
+        };
+        self.examined.iter().map(of).collect()
     }
 }
 
@@ -102,6 +99,11 @@ impl SoftEdge {
             normal: narrow(normal),
             eye_inside: normal.dot(eye - centre) < 0.0,
         }
+    }
+
+    /// Whether the edge has a hard plane; without one it covers nothing.
+    pub(crate) fn has_plane(&self) -> bool {
+        self.normal != [0.0; 3]
     }
 
     /// Away from the light through both ends, not normalised.

@@ -100,6 +100,45 @@ impl LightSide {
     }
 }
 
+/// A rectangle as `k` x `k` lights of equal size and the same colour (paper IV,
+/// §5.2); any light for k = 1.
+pub(crate) fn split(
+    technique: &'static str,
+    light: &Light,
+    number: usize,
+    k: u32,
+) -> Result<Vec<Light>, TechniqueError> {
+    if k == 1 {
+        return Ok(vec![light.clone()]);
+    }
+    let LightShape::Rectangle {
+        centre,
+        edge_u,
+        edge_v,
+    } = light.shape
+    else {
+        return Err(TechniqueError::UnsuitableLight {
+            technique,
+            light: number,
+            why: format!("it cannot be split into {k} x {k}"),
+            valid: "rectangles for split above 1",
+        });
+    };
+    let n = f64::from(k);
+    let place = |i: u32| (f64::from(i) + 0.5) / n - 0.5;
+    let part = |i: u32, j: u32| Light {
+        shape: LightShape::Rectangle {
+            centre: centre + edge_u * place(i) + edge_v * place(j),
+            edge_u: edge_u / n,
+            edge_v: edge_v / n,
+        },
+        colour: light.colour,
+    };
+    Ok((0..k)
+        .flat_map(|j| (0..k).map(move |i| part(i, j)))
+        .collect())
+}
+
 /// Covectors that take the corners of a rectangle to (±1, ±1), and its unit normal.
 fn square_rows(edge_u: DVec3, edge_v: DVec3) -> [DVec3; 3] {
     let (u, v) = (0.5 * edge_u, 0.5 * edge_v);

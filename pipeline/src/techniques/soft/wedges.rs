@@ -21,6 +21,7 @@ use gnomon_shaders::transform::{FullScreen, HomogeneousPoints};
 use super::super::passes::{self, View};
 use super::super::visibility::{full_screen, homogeneous, homogeneous_draw};
 use crate::area_light::AreaLight;
+use crate::technique::{Params, Warning};
 use crate::wedge::{Construction, Wedge, WedgeStatistics};
 
 /// By how much the light, and the edge, are enlarged.
@@ -238,4 +239,47 @@ fn enlarged_edge(centre: DVec3, [a, b]: [DVec3; 2]) -> [DVec3; 2] {
     let (a, b) = (nearer(a), nearer(b));
     let longer = (b - a) * LARGER_EDGE;
     [a - longer, b + longer]
+}
+
+/// The construction that parameter `wedge` names.
+pub(crate) fn construction(params: &Params) -> Construction {
+    match params.get("wedge") {
+        "paper3" => Construction::BoundingSphere,
+        "paper4" => Construction::Tight,
+        _ => Construction::Exact,
+    }
+}
+
+/// What wedge construction met, for people.
+pub(crate) fn warnings_of(
+    label: &str,
+    wedges: &WedgeStatistics,
+    areas: &AreaStatistics,
+) -> impl Iterator<Item = Warning> + use<> {
+    let counted = [
+        (
+            "edges-touching-light",
+            wedges.touching_light,
+            "silhouette edges touch the light; their wedges are half-spaces",
+        ),
+        (
+            "wedges-built-exactly",
+            wedges.aimed_at_centre + wedges.meets_light,
+            "wedges are not defined as asked for, and built exactly instead",
+        ),
+        (
+            "wedges-whole-screen",
+            areas.whole_screen,
+            "wedges are no single mesh, and drawn over the whole screen",
+        ),
+    ];
+    let label = label.to_owned();
+    counted
+        .into_iter()
+        .filter(|(_, count, _)| *count != 0)
+        .map(move |(code, count, what)| Warning {
+            code,
+            count: count as usize,
+            message: format!("{label}: {count} {what}"),
+        })
 }

@@ -1,0 +1,142 @@
+//! Soft shadow volumes against the exact oracle and the closed form, and against
+//! themselves where nothing may change a bit.
+
+use gnomon_pipeline::metrics::visibility::VisibilityError;
+use gnomon_pipeline::oracle::area::{LightRegion, VisibilityImage};
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{Scene, builtin};
+use gnomon_pipeline::technique::{Params, find};
+use gnomon_raster::{GpuConfig, SimdLevel};
+
+const SIZE: [u32; 2] = [120, 80];
+
+fn scene(name: &str) -> Scene {
+    builtin::build(name).unwrap()
+}
+
+fn with(scene: &Scene, set: &[&str], gpu: GpuConfig) -> Rendered {
+    let technique = find("soft-shadow-volumes").unwrap();
+    let params = Params::parse(technique, set).unwrap();
+    let settings = RenderSettings {
+        size: SIZE,
+        gpu,
+        repeat: 1,
+    };
+    render(scene, technique, &params, &settings).unwrap()
+}
+
+fn soft(scene: &Scene, set: &[&str]) -> Rendered {
+    with(scene, set, GpuConfig::default())
+}
+
+fn truth(scene: &Scene) -> VisibilityImage {
+    VisibilityImage::of_scene(scene, 0, SIZE, &|| ()).unwrap()
+}
+
+fn error(scene: &Scene, truth: &VisibilityImage, set: &[&str]) -> VisibilityError {
+    let picture = soft(scene, set);
+    let error = VisibilityError::measure(truth, SIZE, &picture.visibility).unwrap();
+    println!("{} {set:?}: {:?}", scene.name, error.all);
+    error
+}
+
+fn shaded(picture: &Rendered) -> u64 {
+    let wedges = picture.report.passes.iter().filter(|p| p.label == "wedges");
+    wedges
+        .flat_map(|p| &p.draws)
+        .filter(|d| d.label == "penumbra")
+        .map(|d| d.counters.fragments.written)
+        .sum()
+}
+
+#[test]
+fn parallel_plates_are_the_closed_form() {
+    let scene = scene("parallel-plates");
+    let truth = truth(&scene);
+    let exact = error(&scene, &truth, &[]);
+    assert!(exact.all.unwrap().rmse < 1e-5);
+    // Entries have 8 bits for 0..1/2 and the edges end on the light's border or in it.
+    let nearest = error(&scene, &truth, &["backend=texture4d"]).all.unwrap();
+    let finer = error(
+        &scene,
+        &truth,
+        &["backend=texture4d", "texture-filter=quadlinear"],
+    );
+    let finer = finer.all.unwrap();
+    let vertex = [
+        "backend=texture4d",
+        "texture-filter=quadlinear",
+        "texture-centred=vertex",
+    ];
+    let vertex = error(&scene, &truth, &vertex).all.unwrap();
+    assert!(
+        nearest.rmse > 1e-4,
+        "negative control: a table is not exact"
+    );
+    assert!(nearest.max < 4.0 * 0.065 && finer.max < nearest.max);
+    assert!(vertex.max < 4.0 * (0.008 + 0.5 / 510.0), "{vertex:?}");
+    // Four edges, each rounded to 1/63.
+    let bytes = error(&scene, &truth, &["buffer=rgba8x2"]).all.unwrap();
+    assert!(
+        bytes.max <= 4.0 * 0.5 / 63.0 + 1e-4 && bytes.rmse > 1e-4,
+        "{bytes:?}"
+    );
+}
+
+#[test]
+fn nothing_that_only_skips_changes_a_bit() {
+    for name in ["cylinder", "overlap", "adversarial-eye-in-shadow"] {
+        let scene = scene(name);
+        let reference = soft(&scene, &[]);
+        for set in [
+            &["skip=off"][..],
+            &["wedge=paper3"],
+            &["wedge=paper4"],
+            &["wedge=paper3", "skip=off"],
+            &["copy-back=on"],
+        ] {
+            let other = soft(&scene, set);
+            let same = other.visibility_hash() == reference.visibility_hash();
+            assert!(same, "{name} {set:?}");
+            assert_eq!(other.color_hash(), reference.color_hash(), "{name} {set:?}");
+        }
+        let simd = SimdLevel::available().into_iter().next().unwrap();
+        for (threads, tile) in [(1, 16), (3, 64), (4, 128)] {
+            let gpu = GpuConfig {
+                threads,
+                tile,
+                simd,
+                ..GpuConfig::default()
+            };
+            let other = with(&scene, &[], gpu);
+            assert_eq!(
+                other.visibility_hash(),
+                reference.visibility_hash(),
+                "{name} {tile}"
+            );
+        }
+    }
+}
+
+#[test]
+fn tighter_wedges_shade_less() {
+    let scene = scene("cylinder");
+    let count = |set: &[&str]| shaded(&soft(&scene, set));
+    let [exact, tight, sphere] =
+        ["exact", "paper4", "paper3"].map(|w| count(&[&format!("wedge={w}")]));
+    let all = count(&["skip=off"]);
+    println!("shaded: exact {exact}, paper IV {tight}, paper III {sphere}, no skip {all}");
+    assert!(exact <= tight && tight < sphere && sphere < all);
+}
+
+#[test]
+fn the_known_errors_are_there_and_the_oracle_has_none() {
+    let scene = scene("single-silhouette");
+    let truth = truth(&scene);
+    let picture = soft(&scene, &[]);
+    let error = VisibilityError::measure(&truth, SIZE, &picture.visibility).unwrap();
+    let umbra = error.of_region(LightRegion::Umbra).unwrap();
+    println!("single-silhouette umbra: {umbra:?}");
+    // Below the cube: dark in truth, not so by the silhouette.
+    assert!(umbra.max > 0.1);
+}

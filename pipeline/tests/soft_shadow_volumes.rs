@@ -15,7 +15,16 @@ fn scene(name: &str) -> Scene {
 }
 
 fn with(scene: &Scene, set: &[&str], gpu: GpuConfig) -> Rendered {
-    let technique = find("soft-shadow-volumes").unwrap();
+    render_by("soft-shadow-volumes", scene, set, gpu)
+}
+
+fn optimised(scene: &Scene, set: &[&str]) -> Rendered {
+    let name = "soft-shadow-volumes-optimised";
+    render_by(name, scene, set, GpuConfig::default())
+}
+
+fn render_by(name: &str, scene: &Scene, set: &[&str], gpu: GpuConfig) -> Rendered {
+    let technique = find(name).unwrap();
     let params = Params::parse(technique, set).unwrap();
     let settings = RenderSettings {
         size: SIZE,
@@ -34,7 +43,15 @@ fn truth(scene: &Scene) -> VisibilityImage {
 }
 
 fn error(scene: &Scene, truth: &VisibilityImage, set: &[&str]) -> VisibilityError {
-    let picture = soft(scene, set);
+    measured(scene, truth, set, &soft(scene, set))
+}
+
+fn measured(
+    scene: &Scene,
+    truth: &VisibilityImage,
+    set: &[&str],
+    picture: &Rendered,
+) -> VisibilityError {
     let error = VisibilityError::measure(truth, SIZE, &picture.visibility).unwrap();
     println!("{} {set:?}: {:?}", scene.name, error.all);
     error
@@ -139,4 +156,92 @@ fn the_known_errors_are_there_and_the_oracle_has_none() {
     println!("single-silhouette umbra: {umbra:?}");
     // Below the cube: dark in truth, not so by the silhouette.
     assert!(umbra.max > 0.1);
+    let scene = self::scene("overlap");
+    let truth = self::truth(&scene);
+    let summed = self::error(&scene, &truth, &[]);
+    // Where penumbrae overlap the sum is too dark, nowhere too bright.
+    let penumbra = summed.of_region(LightRegion::Penumbra).unwrap();
+    assert!(
+        penumbra.mean < -0.001 && penumbra.max > 0.02,
+        "{penumbra:?}"
+    );
+}
+
+#[test]
+fn twelve_bits_are_as_exact_as_they_say() {
+    let scene = scene("parallel-plates");
+    let truth = truth(&scene);
+    let of = |set: &[&str]| {
+        let picture = optimised(&scene, set);
+        measured(&scene, &truth, set, &picture).all.unwrap()
+    };
+    // Four edges, each rounded to 1/4095, and floats.
+    let exact = of(&[]);
+    assert!(
+        exact.max <= 4.0 * 0.5 / 4095.0 + 2e-5 && exact.rmse > 1e-6,
+        "{exact:?}"
+    );
+    // The split map leaves 10 bits: 1/1023 and then 1/4095.
+    let ten = of(&["split-bits=lut"]);
+    assert!(
+        ten.max <= 4.0 * (0.5 / 1023.0 + 0.5 / 4095.0) + 2e-5,
+        "{ten:?}"
+    );
+    assert!(ten.rmse > 2.0 * exact.rmse, "10 bits are worse than 12");
+    // Angles are rounded to 1/255 of a turn, at both ends of each edge, and areas
+    // to 1/510: the square's area grows by at most twice the angle's share.
+    let tables = of(&["coverage=lut"]);
+    assert!(
+        tables.max <= 4.0 * (2.0 * 2.0 * 0.5 / 255.0 + 0.5 / 510.0),
+        "{tables:?}"
+    );
+    assert!(tables.rmse > ten.rmse);
+}
+
+#[test]
+fn what_only_skips_changes_no_bit_when_split_either() {
+    let scene = scene("overlap");
+    for set in [&["combine=sum"][..], &["combine=paper"], &["split=2"]] {
+        let reference = optimised(&scene, set);
+        for more in ["skip=off", "wedge=exact", "wedge=paper3"] {
+            let other = optimised(&scene, &[set, &[more]].concat());
+            let same = other.visibility_hash() == reference.visibility_hash();
+            assert!(same, "{set:?} {more}");
+        }
+    }
+}
+
+#[test]
+fn splitting_the_light_approaches_the_truth() {
+    for name in ["single-silhouette", "overlap"] {
+        let scene = scene(name);
+        let truth = truth(&scene);
+        let mut last = f64::INFINITY;
+        let one = shaded(&optimised(&scene, &[]));
+        for k in [1, 2, 3, 8] {
+            let set = [&*format!("split={k}")];
+            let picture = optimised(&scene, &set);
+            let rmse = measured(&scene, &truth, &set, &picture).all.unwrap().rmse;
+            let shaded = shaded(&picture);
+            println!("{name} {k}x{k}: {rmse:.5}, {shaded} shaded of {one}");
+            assert!(rmse < last, "{name}: {k}x{k} is no better");
+            assert!(k == 1 || shaded < u64::from(k * k) * one, "{name}: {k}x{k}");
+            last = rmse;
+        }
+    }
+}
+
+#[test]
+fn combining_silhouettes_is_between_the_extremes() {
+    let scene = scene("overlap");
+    let truth = truth(&scene);
+    let rmse = |rule: &str| {
+        let set = [&*format!("combine={rule}")];
+        let picture = optimised(&scene, &set);
+        measured(&scene, &truth, &set, &picture).all.unwrap()
+    };
+    let [sum, paper, bounded] = ["sum", "paper", "bounded"].map(rmse);
+    // Two casters: both rules are the same, and hide less than the sum.
+    assert!((paper.rmse - bounded.rmse).abs() < 1e-6);
+    assert!(sum.mean < paper.mean);
 }

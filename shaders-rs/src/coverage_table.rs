@@ -11,6 +11,7 @@ use gnomon_raster::simd::{each3, each4};
 use gnomon_raster::{F32, I32, Lanes};
 
 use crate::coverage::Segment;
+use crate::soft_volumes::texel_of;
 
 /// How the coverage texture is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,7 +132,7 @@ impl CoverageTable {
             (y1 * n + y0).to_i32(),
             I32::splat(l, 0),
         ];
-        let [r, g, b, _] = f.fetch_texel(slot, at, 0);
+        let [r, g, b, _] = texel_of(l, f, slot, at);
         [r, g, b]
     }
 }

@@ -13,6 +13,7 @@ use gnomon_raster::shader::{
 use gnomon_raster::simd::{each3, each4};
 use gnomon_raster::{F32, I32, Lanes, Mask};
 
+use crate::coverage::outlined;
 use crate::coverage::{Edge, Projector, Segment, clip, covered};
 use crate::coverage_table::CoverageTable;
 use crate::transform::{ClipFromWorld, FullScreen};
@@ -28,9 +29,24 @@ pub(crate) fn own_texels<L: Lanes, const N: usize>(
     let at = [f.column(), f.row(), I32::splat(l, 0)];
     let mut texels = [[F32::splat(l, 0.0); 4]; N];
     for (slot, texel) in texels.iter_mut().enumerate().take(count) {
-        *texel = f.fetch_texel(slot, at, 0);
+        *texel = texel_of(l, f, slot, at);
     }
     texels
+}
+
+/// One texel, in a function of its own for all shaders.
+#[inline(always)]
+pub(crate) fn texel_of<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    slot: usize,
+    at: [I32<L>; 3],
+) -> [F32<L>; 4] {
+    outlined(
+        l,
+        #[inline(always)]
+        || f.fetch_texel(slot, at, 0),
+    )
 }
 
 /// A position relative to `centre`, and whether shadow may fall on it.
@@ -84,7 +100,7 @@ impl VertexShader for HardQuads {
 
     #[inline(always)]
     fn shade<L: Lanes>(&self, _: L, v: &mut Vertex<'_, L>) {
-        let position = [0, 1, 2, 3].map(
+        let position = each4(
             #[inline(always)]
             |i| v.attribute(i),
         );

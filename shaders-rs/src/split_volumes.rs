@@ -17,7 +17,7 @@ use gnomon_raster::simd::{each3, each4};
 use gnomon_raster::{F32, I32, Lanes};
 
 use crate::coverage::{Edge, Projector, Segment, clip, covered};
-use crate::soft_volumes::{HardPlane, own_texels, reads, receiver};
+use crate::soft_volumes::{HardPlane, own_texels, reads, receiver, texel_of};
 
 /// Contributions that fit into a channel for certain: 255 / 7.
 pub const CAPACITY: u32 = 36;
@@ -111,7 +111,7 @@ impl SplitPenumbra {
                 2 => (2, area_texel(l, angles)),
                 _ => (3, split_texel(l, share)),
             };
-            let texel = f.fetch_texel(slot, at, 0);
+            let texel = texel_of(l, f, slot, at);
             match step {
                 0 => angles[0] = texel[0],
                 1 => angles[1] = texel[0],

@@ -17,6 +17,7 @@
 mod round;
 mod square;
 
+use fearless_simd::Simd as _;
 use gnomon_raster::math::dot3;
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, Lanes, Mask};
@@ -99,10 +100,14 @@ impl Projector {
     /// The edge as seen from `from`, a position relative to the light's centre.
     #[inline(always)]
     pub fn project<L: Lanes>(&self, l: L, from: [F32<L>; 3], edge: &Edge) -> Projected<L> {
-        match self {
-            Self::Flat(light) => light.project(l, from, edge),
-            Self::Sphere(light) => light.project(l, from, edge),
-        }
+        outlined(
+            l,
+            #[inline(always)]
+            || match self {
+                Self::Flat(light) => light.project(l, from, edge),
+                Self::Sphere(light) => light.project(l, from, edge),
+            },
+        )
     }
 }
 
@@ -218,6 +223,14 @@ fn across<L: Lanes>(l: L, [x, y, z]: [F32<L>; 3]) -> [[F32<L>; 3]; 2] {
     ]
 }
 
+/// Runs `f` in a function of its own, compiled for the level: shaders share it, and
+/// none becomes too large to compile quickly. Annotate the closure with
+/// `#[inline(always)]`.
+#[inline(always)]
+pub(crate) fn outlined<L: Lanes, T>(l: L, f: impl FnOnce() -> T) -> T {
+    l.isa().vectorize(f)
+}
+
 /// A point in coordinates of the frame, in units of `size`.
 #[inline(always)]
 fn local<L: Lanes>(l: L, frame: [[F32<L>; 3]; 3], size: F32<L>, point: &[f32; 3]) -> [F32<L>; 3] {
@@ -253,10 +266,15 @@ fn at<L: Lanes>(l: L, a: [F32<L>; 3], b: [F32<L>; 3], t: F32<L>) -> ([F32<L>; 2]
 #[inline(always)]
 pub fn clip<L: Lanes>(l: L, image: Image, projected: &Projected<L>) -> Segment<L> {
     let [a, b] = projected.ends;
-    let [from, to] = match image {
-        Image::Square => square::clip(l, a, b, projected.part),
-        Image::Disc => round::clip(l, a, b, projected.part),
-    };
+    let part = projected.part;
+    let [from, to] = outlined(
+        l,
+        #[inline(always)]
+        || match image {
+            Image::Square => square::clip(l, a, b, part),
+            Image::Disc => round::clip(l, a, b, part),
+        },
+    );
     let (p, p_front) = at(l, a, b, from);
     let (q, q_front) = at(l, a, b, to);
     Segment {
@@ -270,10 +288,14 @@ pub fn clip<L: Lanes>(l: L, image: Image, projected: &Projected<L>) -> Segment<L
 pub fn covered<L: Lanes>(l: L, image: Image, segment: &Segment<L>) -> F32<L> {
     let [p, q] = segment.ends;
     let cross = (p[0] * q[1] - p[1] * q[0]).abs();
-    let sector = match image {
-        Image::Square => square::sector(l, p, q),
-        Image::Disc => round::sector(p, q),
-    };
+    let sector = outlined(
+        l,
+        #[inline(always)]
+        || match image {
+            Image::Square => square::sector(l, p, q),
+            Image::Disc => round::sector(p, q),
+        },
+    );
     let zero = F32::splat(l, 0.0);
     let share = ((sector - cross * 0.5) / image.area()).max(zero);
     segment.some.select_f32(share, zero)

@@ -72,26 +72,32 @@ fn parallel_plates_are_the_closed_form() {
     let truth = truth(&scene);
     let exact = error(&scene, &truth, &[]);
     assert!(exact.all.unwrap().rmse < 1e-5);
-    // Entries have 8 bits for 0..1/2 and the edges end on the light's border or in it.
-    let nearest = error(&scene, &truth, &["backend=texture4d"]).all.unwrap();
-    let finer = error(
-        &scene,
-        &truth,
-        &["backend=texture4d", "texture-filter=quadlinear"],
-    );
-    let finer = finer.all.unwrap();
-    let vertex = [
-        "backend=texture4d",
-        "texture-filter=quadlinear",
-        "texture-centred=vertex",
-    ];
-    let vertex = error(&scene, &truth, &vertex).all.unwrap();
+    // Entries have 8 bits for 0..1/2, and their places are rounded: by measure
+    // 0.0079 RMS and 0.065 at most for one edge (IMPLEMENTING §1.4), of which two
+    // meet in most places. Filters mix both sides of the light's centre, where the
+    // coverage of an edge that ends there jumps: a pixel or two are further off.
+    let table = |more: &[&str]| {
+        let set = [&["backend=texture4d"], more].concat();
+        error(&scene, &truth, &set).all.unwrap()
+    };
+    let nearest = table(&[]);
+    let linear = table(&["texture-filter=quadlinear"]);
+    let vertex = table(&["texture-filter=quadlinear", "texture-centred=vertex"]);
+    let finer = table(&["texture-size=64"]);
     assert!(
-        nearest.rmse > 1e-4,
-        "negative control: a table is not exact"
+        nearest.rmse < 0.0079 && nearest.max < 2.0 * 0.065,
+        "{nearest:?}"
     );
-    assert!(nearest.max < 4.0 * 0.065 && finer.max < nearest.max);
-    assert!(vertex.max < 4.0 * (0.008 + 0.5 / 510.0), "{vertex:?}");
+    assert!(
+        nearest.rmse > 100.0 * exact.all.unwrap().rmse,
+        "a table is not exact"
+    );
+    assert!(finer.rmse < 0.75 * nearest.rmse, "{finer:?}");
+    assert!(linear.p99 < nearest.p99 && vertex.p99 < linear.p99);
+    assert!(
+        vertex.p99 < 2.0 * 0.5 / 510.0,
+        "quantisation alone: {vertex:?}"
+    );
     // Four edges, each rounded to 1/63.
     let bytes = error(&scene, &truth, &["buffer=rgba8x2"]).all.unwrap();
     assert!(
@@ -211,24 +217,45 @@ fn what_only_skips_changes_no_bit_when_split_either() {
     }
 }
 
+/// The RMSE of lights split k x k; shaded pixels grow by less than k².
+fn split_errors(name: &str, splits: &[u32]) -> Vec<f64> {
+    let scene = scene(name);
+    let truth = truth(&scene);
+    let one = shaded(&optimised(&scene, &[]));
+    let error = |k: &u32| {
+        let set = [&*format!("split={k}")];
+        let picture = optimised(&scene, &set);
+        let rmse = measured(&scene, &truth, &set, &picture).all.unwrap().rmse;
+        let shaded = shaded(&picture);
+        println!("{name} {k}x{k}: {rmse:.6}, {shaded} shaded of {one}");
+        assert!(
+            *k == 1 || shaded < u64::from(k * k) * one,
+            "{name}: {k}x{k}"
+        );
+        rmse
+    };
+    splits.iter().map(error).collect()
+}
+
 #[test]
 fn splitting_the_light_approaches_the_truth() {
-    for name in ["single-silhouette", "overlap"] {
-        let scene = scene(name);
-        let truth = truth(&scene);
-        let mut last = f64::INFINITY;
-        let one = shaded(&optimised(&scene, &[]));
-        for k in [1, 2, 3, 8] {
-            let set = [&*format!("split={k}")];
-            let picture = optimised(&scene, &set);
-            let rmse = measured(&scene, &truth, &set, &picture).all.unwrap().rmse;
-            let shaded = shaded(&picture);
-            println!("{name} {k}x{k}: {rmse:.5}, {shaded} shaded of {one}");
-            assert!(rmse < last, "{name}: {k}x{k} is no better");
-            assert!(k == 1 || shaded < u64::from(k * k) * one, "{name}: {k}x{k}");
-            last = rmse;
-        }
+    for name in ["cylinder", "creature", "columns"] {
+        let errors = split_errors(name, &[1, 2, 3, 8]);
+        assert!(errors.windows(2).all(|w| w[1] < w[0]), "{name}: {errors:?}");
+        assert!(errors[3] < 0.5 * errors[0], "{name}: {errors:?}");
     }
+    // Where a face's plane cuts a part of the light its silhouette is wrong whatever
+    // the size, so symmetric scenes need not fall step by step.
+    for name in ["overlap", "single-silhouette"] {
+        let errors = split_errors(name, &[1, 8]);
+        assert!(errors[1] < 0.25 * errors[0], "{name}: {errors:?}");
+    }
+    // The planes of the cube's sides cut this light into 3 x 3: no silhouette
+    // changes within a part, and nothing is approximated.
+    let [thirds] = split_errors("single-silhouette", &[3])[..] else {
+        unreachable!()
+    };
+    assert!(thirds < 1e-4, "{thirds}");
 }
 
 #[test]
@@ -241,7 +268,49 @@ fn combining_silhouettes_is_between_the_extremes() {
         measured(&scene, &truth, &set, &picture).all.unwrap()
     };
     let [sum, paper, bounded] = ["sum", "paper", "bounded"].map(rmse);
-    // Two casters: both rules are the same, and hide less than the sum.
-    assert!((paper.rmse - bounded.rmse).abs() < 1e-6);
-    assert!(sum.mean < paper.mean);
+    // Both rules hide less than the sum, and are nearer to the truth. They differ
+    // where two casters hide more than all: the paper's rule is cut off there.
+    assert!(sum.mean < paper.mean && paper.mean < bounded.mean);
+    assert!(bounded.rmse < paper.rmse && paper.rmse < 0.7 * sum.rmse);
+}
+
+/// Everything that is hard: no NaN, nothing outside 0..=1, surfaces where there are
+/// some.
+#[test]
+fn adversarial_scenes_stay_sane() {
+    for entry in builtin::SCENES
+        .iter()
+        .filter(|s| s.name.starts_with("adversarial"))
+    {
+        let scene = entry.build();
+        let picture = soft(&scene, &[]);
+        let sane = |v: &f32| v.is_nan() || (0.0..=1.0).contains(v);
+        assert!(picture.visibility.iter().all(sane), "{}", entry.name);
+        assert!(
+            picture.warnings.iter().all(|w| w.code != "nan"),
+            "{}",
+            entry.name
+        );
+        let truth = truth(&scene);
+        let error = VisibilityError::measure(&truth, SIZE, &picture.visibility).unwrap();
+        println!("{}: {:?}", entry.name, error.all);
+        // At outlines a ray and a rasteriser may differ.
+        assert!(
+            error.mask.surplus + error.mask.missing <= 4,
+            "{}",
+            entry.name
+        );
+        assert_eq!(error.mask.out_of_range, 0, "{}", entry.name);
+    }
+}
+
+/// Figures, for whoever reads the output.
+#[test]
+fn built_in_scenes_against_the_truth() {
+    for name in ["cylinder", "creature", "spheres", "columns", "demo"] {
+        let scene = scene(name);
+        let truth = truth(&scene);
+        let error = error(&scene, &truth, &[]).all.unwrap();
+        assert!(error.rmse < 0.1, "{name}: {error:?}");
+    }
 }

@@ -205,15 +205,33 @@ fn visibility(
     Ok(depth.iter().zip(values).map(at).collect())
 }
 
+/// Whether a pass of that label adds up coverage or counts instead of light.
+fn adds_up_coverage(label: &str) -> bool {
+    ["quads", "wedges"]
+        .iter()
+        .any(|what| label.starts_with(what))
+}
+
 /// Events that changed the picture without stopping it.
 fn event_warnings(report: &SubmitReport) -> Vec<Warning> {
     let mut total = gnomon_raster::Counters::default();
     report.passes.iter().for_each(|p| total.add(&p.totals()));
-    let saturated: u64 = total.events.blend_saturated.iter().sum();
+    let saturated = |coverage: bool| -> u64 {
+        let passes = report.passes.iter();
+        passes
+            .filter(|p| adds_up_coverage(&p.label) == coverage)
+            .flat_map(|p| p.totals().events.blend_saturated)
+            .sum()
+    };
     let events = [
         (
+            "coverage-saturated",
+            saturated(true),
+            "channels of coverage buffers saturated: more wedges overlap than carry bits hold; split the light or use soft-shadow-volumes with buffer=r32f",
+        ),
+        (
             "blend-saturated",
-            saturated,
+            saturated(false),
             "colour channels saturated while light was added; dim the lights or use color-format=rgba16f",
         ),
         (

@@ -141,6 +141,15 @@ fn nothing_that_only_skips_changes_a_bit() {
     }
 }
 
+/// Fragments of wedges whose coverage changed the buffer.
+fn useful(picture: &Rendered) -> u64 {
+    let wedges = picture.report.passes.iter().filter(|p| p.label == "wedges");
+    let silent: u64 = wedges
+        .map(|p| p.totals().events.silent_color_writes[0])
+        .sum();
+    shaded(picture) - silent
+}
+
 #[test]
 fn tighter_wedges_shade_less() {
     let scene = scene("cylinder");
@@ -150,6 +159,9 @@ fn tighter_wedges_shade_less() {
     let all = count(&["skip=off"]);
     println!("shaded: exact {exact}, paper IV {tight}, paper III {sphere}, no skip {all}");
     assert!(exact <= tight && tight < sphere && sphere < all);
+    let useful = useful(&soft(&scene, &["wedge=exact"]));
+    println!("shaded over useful: {}", exact as f64 / useful as f64);
+    assert!(exact as f64 / (useful as f64) < 1.3);
 }
 
 #[test]
@@ -313,4 +325,45 @@ fn built_in_scenes_against_the_truth() {
         let error = error(&scene, &truth, &[]).all.unwrap();
         assert!(error.rmse < 0.1, "{name}: {error:?}");
     }
+}
+
+/// A stack of forty plates under one light: their edges overlap in 40 wedges and
+/// more than four times what six bits hold, which is said; floats hold it.
+#[test]
+fn capacity_is_reported_when_it_is_reached() {
+    let scene = stack(40);
+    let codes = |picture: &Rendered| -> Vec<&'static str> {
+        picture.warnings.iter().map(|w| w.code).collect()
+    };
+    assert!(codes(&soft(&scene, &["buffer=rgba8x2"])).contains(&"coverage-saturated"));
+    assert!(codes(&optimised(&scene, &[])).contains(&"coverage-saturated"));
+    assert!(!codes(&optimised(&scene, &["combine=bounded"])).contains(&"coverage-saturated"));
+    assert!(codes(&soft(&scene, &[])).is_empty());
+}
+
+/// Plates whose edges are behind each other as seen from the light's centre.
+fn stack(count: u32) -> Scene {
+    use gnomon_pipeline::light::Light;
+    use gnomon_pipeline::mesh::Shading;
+    use gnomon_pipeline::scene::{Camera, Material, Object};
+    use gnomon_pipeline::shape;
+    let solid = |name: String, shape: shape::Shape| {
+        let mesh = shape.into_mesh(Shading::Flat).unwrap();
+        Object::new(name, mesh, Material::matt([0.7; 3]))
+    };
+    let top = 6.0;
+    let plate = |k: u32| {
+        let y = 0.5 + 0.05 * f64::from(k);
+        let side = 0.25 * (top - y - 0.005);
+        let size = glam::DVec3::new(side, 0.01, side);
+        solid(
+            format!("plate {k}"),
+            shape::cuboid(glam::DVec3::Y * y, size),
+        )
+    };
+    let mut objects = vec![solid("floor".to_owned(), shape::plane(4.0, 0.0)).receiver_only()];
+    objects.extend((0..count).map(plate));
+    let light = Light::horizontal_square(glam::DVec3::Y * top, 1.0);
+    let camera = Camera::look_at([2.0, 1.0, 2.5], [0.0, 0.2, 0.0]);
+    Scene::new(camera, vec![light], objects)
 }

@@ -9,13 +9,16 @@ use gnomon_pipeline::light::LightShape;
 use gnomon_raster::shader::{FragmentOutputs, FragmentStage, ScalarFragmentOutput, per_fragment};
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
-    ColorAttachment, CommandList, Draw, Format, Gpu, GpuConfig, LoadOp, RenderPass, RenderPipeline,
-    Sampler, StoreOp, SubmitReport, Subresource, TextureBinding, TextureDescriptor, TextureId,
+    ColorAttachment, CommandList, Draw, Format, Gpu, GpuConfig, IndexBuffer, LoadOp, RenderPass,
+    RenderPipeline, Sampler, StoreOp, SubmitReport, Subresource, TextureBinding, TextureDescriptor,
+    TextureId, VertexBuffer,
 };
 use gnomon_shaders::coverage::{FlatLight, Image, Projector, SphereLight};
-use gnomon_shaders::soft_volumes::{CoverTo, ExactCoverage, HardPlane, Penumbra};
+use gnomon_shaders::soft_volumes::{
+    CountTo, CoverTo, ExactCoverage, HardCount, HardPlane, HardQuads, Penumbra,
+};
 use gnomon_shaders::split_volumes::{AddVisibility, CAPACITY, Combination, CombineGroups};
-use gnomon_shaders::transform::FullScreen;
+use gnomon_shaders::transform::{ClipFromWorld, FullScreen};
 
 const SIDE: u32 = 64;
 const COUNT: usize = (SIDE * SIDE) as usize;
@@ -203,6 +206,137 @@ fn lanes_agree_with_the_twin() {
         }
         println!("{shape:?}: {worst:e} of {compared}, {covering} covering");
         assert!(covering > 10_000 && worst < 1e-5, "{shape:?}: {worst:e}");
+    }
+}
+
+/// Counts one quad over the whole screen, seen from outside it.
+fn count_everywhere(normal: DVec3, positions: TextureId) -> Draw {
+    let identity = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|k| if i == k { 1.0 } else { 0.0 }));
+    let pipeline = RenderPipeline {
+        label: "count".into(),
+        vertex: HardQuads(ClipFromWorld(identity)).stage(),
+        fragment: Some(
+            HardCount {
+                centre: [0.0; 3],
+                to: CountTo::Visibility,
+            }
+            .stage(),
+        ),
+        primitive: PrimitiveState::default(),
+        depth_stencil: DepthStencilState::default(),
+        color_targets: vec![ColorTargetState::ADDITIVE],
+    };
+    let corners = [[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]];
+    let [x, y, z] = narrow(normal);
+    let vertex = |[u, v]: [f32; 2]| [u, v, 0.0, 1.0, x, y, z, 0.0];
+    let vertices = VertexBuffer {
+        data: corners.into_iter().flat_map(vertex).collect(),
+        stride: 8,
+    };
+    let indices = Arc::new(IndexBuffer::new(vec![0, 1, 2]));
+    let mut draw = Draw::indexed("count", &Arc::new(pipeline), &Arc::new(vertices), &indices);
+    draw.textures = vec![TextureBinding {
+        texture: positions,
+        sampler: Sampler::default(),
+    }];
+    draw
+}
+
+/// Half of the light is seen on a quad's plane, and a few ulp beside it: count and
+/// sign agree to the bit. With another plane for the sign they would not.
+#[test]
+fn count_and_sign_agree_next_to_the_plane() {
+    let mut random = Random(11);
+    let (light, rows) = projector(&shapes()[0]);
+    let mut mismatched = 0;
+    for _ in 0..20 {
+        let slope = random.point(0.3);
+        let along = DVec3::new(1.5, slope.x, 0.0);
+        let middle = DVec3::new(0.0, slope.y, -2.0);
+        let ends = [middle - along, middle + along].map(wide);
+        let normal = (ends[1] - ends[0]).cross(-ends[0]).normalize();
+        let nudged =
+            |v: f64, ulps: i32| f32::from_bits(((v as f32).to_bits() as i32 + ulps) as u32);
+        let texels: Vec<[f32; 4]> = (0..COUNT)
+            .map(|k| {
+                // On the plane, behind the middle of the edge, and -2..=2 ulp off.
+                let e = ends[0] + (ends[1] - ends[0]) * (0.4 + 0.2 * random.unit());
+                let p = e * (1.5 + random.unit());
+                let ulps = k as i32 % 5 - 2;
+                [p.x as f32, nudged(p.y, ulps), p.z as f32, 1.0]
+            })
+            .collect();
+        let mut gpu = gpu();
+        let positions = texture(&mut gpu, Format::Rgba32Float);
+        let target = gpu.texture_mut(positions).unwrap();
+        target.write_color(Subresource::default(), &texels).unwrap();
+        let mut seen_with = |plane: DVec3| {
+            let shader = Penumbra {
+                light,
+                covering: ExactCoverage,
+                edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
+                plane: HardPlane(narrow(plane)),
+                to: CoverTo::Visibility,
+            };
+            let out = texture(&mut gpu, Format::R32Float);
+            let wedge = full_screen(shader.stage(), ColorTargetState::ADDITIVE, &[positions; 2]);
+            let draws = vec![count_everywhere(normal, positions), wedge];
+            submit(&mut gpu, out, LoadOp::Clear([1.0; 4]), draws);
+            red(&gpu, out)
+        };
+        for v in seen_with(normal) {
+            assert!((v - 0.5).abs() < 1e-4, "{v}");
+        }
+        let other = (normal + DVec3::new(0.0, 0.0, 3e-7)).normalize();
+        mismatched += seen_with(other)
+            .iter()
+            .filter(|v| (**v - 0.5).abs() > 0.9)
+            .count();
+    }
+    assert!(mismatched > 1000, "negative control: {mismatched}");
+}
+
+/// An edge in m pieces covers what it does in one; tables and six bits drift.
+#[test]
+fn pieces_of_an_edge_cover_what_it_does() {
+    let mut random = Random(5);
+    let (light, rows) = projector(&shapes()[0]);
+    let ends = [DVec3::new(-0.9, 0.13, -2.0), DVec3::new(0.8, 0.31, -2.2)].map(wide);
+    let normal = (ends[1] - ends[0]).cross(-ends[0]).normalize();
+    let texels: Vec<[f32; 4]> = (0..COUNT)
+        .map(|_| {
+            let [x, y, z] = narrow(DVec3::new(0.0, 0.3, -4.0) + random.point(0.8));
+            [x, y, z, 1.0]
+        })
+        .collect();
+    let mut gpu = gpu();
+    let positions = texture(&mut gpu, Format::Rgba32Float);
+    let target = gpu.texture_mut(positions).unwrap();
+    target.write_color(Subresource::default(), &texels).unwrap();
+    let mut covered = |m: u32| {
+        let at = |k: u32| ends[0] + (ends[1] - ends[0]) * (f64::from(k) / f64::from(m));
+        let pieces = (0..m).map(|k| {
+            let piece = [at(k), at(k + 1)];
+            let shader = Penumbra {
+                light,
+                covering: ExactCoverage,
+                edge: piece.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
+                plane: HardPlane(narrow(normal)),
+                to: CoverTo::Visibility,
+            };
+            full_screen(shader.stage(), ColorTargetState::ADDITIVE, &[positions; 2])
+        });
+        let draws = pieces.collect();
+        let out = texture(&mut gpu, Format::R32Float);
+        submit(&mut gpu, out, LoadOp::Clear([0.0; 4]), draws);
+        red(&gpu, out)
+    };
+    let whole = covered(1);
+    for m in [2, 5, 16, 64] {
+        let drift = whole.iter().zip(covered(m)).map(|(a, b)| (a - b).abs());
+        let drift = drift.fold(0.0, f32::max);
+        println!("{m} pieces: {drift:e}");
+        assert!(drift < 1e-5, "{m}: {drift:e}");
     }
 }
 

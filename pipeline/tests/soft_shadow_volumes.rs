@@ -367,3 +367,29 @@ fn stack(count: u32) -> Scene {
     let camera = Camera::look_at([2.0, 1.0, 2.5], [0.0, 0.2, 0.0]);
     Scene::new(camera, vec![light], objects)
 }
+
+/// Red is the half of the light along its first edge: its visibility is that of a
+/// light of that half alone.
+#[test]
+fn a_two_colour_light_is_two_half_lights() {
+    use gnomon_pipeline::light::LightShape;
+    let scene = scene("parallel-plates");
+    let mut half = scene.clone();
+    let LightShape::Rectangle { centre, edge_u, .. } = &mut half.lights[0].shape else {
+        unreachable!()
+    };
+    *centre -= *edge_u / 4.0;
+    *edge_u /= 2.0;
+    let truth = self::truth(&half);
+    let set = [
+        "light-image=halves",
+        "texture-filter=quadlinear",
+        "texture-centred=vertex",
+    ];
+    let both = error(&scene, &truth, &set).all.unwrap();
+    let white = error(&scene, &truth, &[]).all.unwrap();
+    assert!(
+        both.rmse < 0.02 && both.rmse < 0.25 * white.rmse,
+        "{both:?} {white:?}"
+    );
+}

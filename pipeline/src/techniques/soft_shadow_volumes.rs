@@ -23,7 +23,7 @@ use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
     Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureBinding, TextureDescriptor, TextureId,
 };
-use gnomon_shaders::coverage::Edge;
+use gnomon_shaders::coverage::{Edge, Image};
 use gnomon_shaders::coverage_table::CoverageTable;
 use gnomon_shaders::soft_volumes::{CountTo, CoverTo, ExactCoverage, HardPlane, Penumbra, Resolve};
 use gnomon_shaders::transform::FullScreen;
@@ -33,7 +33,8 @@ use super::shadow_volumes::{OPEN_CASTERS, SKIP, policy};
 use super::soft::count::Counting;
 use super::soft::edges::{Casters, Silhouettes};
 use super::soft::light::{LightSide, SoftLight};
-use super::soft::table;
+use super::soft::light_image::LightImage;
+use super::soft::table::{self, Contents};
 use super::soft::wedges::{
     AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
 };
@@ -82,6 +83,20 @@ const TEXTURE_CENTRED: ParamInfo = ParamInfo {
     summary: "entries of the 4D texture at cells' centres, as the paper's, or up to the border",
 };
 
+const LIGHT_IMAGE: ParamInfo = ParamInfo {
+    name: "light-image",
+    default: "white",
+    valid: "white|halves|windows|fire",
+    summary: "colours on a rectangle, by a coloured 4D texture: two, sixteen lights, a fire",
+};
+
+const LIGHT_FRAME: ParamInfo = ParamInfo {
+    name: "light-frame",
+    default: "0",
+    valid: "N",
+    summary: "number of the fire's frame; each has a 4D texture of its own",
+};
+
 const BUFFER: ParamInfo = ParamInfo {
     name: "buffer",
     default: "r32f",
@@ -119,6 +134,8 @@ impl Technique for SoftShadowVolumes {
             TEXTURE_SIZE,
             TEXTURE_FILTER,
             TEXTURE_CENTRED,
+            LIGHT_IMAGE,
+            LIGHT_FRAME,
             BUFFER,
             COPY_BACK,
             SPHERE,
@@ -159,7 +176,7 @@ impl Technique for SoftShadowVolumes {
                 buffers: &buffers,
                 light: &soft,
                 params,
-                covering: Covering::create(self.name(), &soft, params, textures)?,
+                covering: Covering::create(self.name(), &soft, light, params, textures)?,
             };
             let label = |what: &str| passes::label(what, light, &lights);
             list.push(volumes.count_pass(label("quads"), &silhouettes));
@@ -174,8 +191,21 @@ impl Technique for SoftShadowVolumes {
     }
 }
 
+/// The colours on the light, where they are not one.
+fn light_image(params: &Params) -> Option<LightImage> {
+    let frame = params.get(LIGHT_FRAME.name).parse().unwrap_or(0);
+    match params.get(LIGHT_IMAGE.name) {
+        "halves" => Some(LightImage::halves()),
+        "windows" => Some(LightImage::windows()),
+        "fire" => Some(LightImage::fire(frame)),
+        _ => None,
+    }
+}
+
 /// Textures that coverage is added up in.
 struct Buffers {
+    /// Red, green and blue apart.
+    coloured: bool,
     /// Visibility, float.
     visibility: TextureId,
     /// For copying back, of the same kind.
@@ -195,10 +225,17 @@ impl Buffers {
         };
         let bytes = params.get(BUFFER.name) == "rgba8x2";
         let aside = !bytes && params.get(COPY_BACK.name) == "on";
+        let coloured = light_image(params).is_some();
+        let float = if coloured {
+            Format::Rgba32Float
+        } else {
+            Format::R32Float
+        };
         Ok(Self {
-            visibility: create("visibility", Format::R32Float)?,
+            coloured,
+            visibility: create("visibility", float)?,
             aside: if aside {
-                Some(create("visibility aside", Format::R32Float)?)
+                Some(create("visibility aside", float)?)
             } else {
                 None
             },
@@ -214,7 +251,10 @@ impl Buffers {
     }
 
     fn visibility(&self) -> VisibilityTexture {
-        VisibilityTexture::red(self.visibility)
+        VisibilityTexture {
+            coloured: self.coloured,
+            ..VisibilityTexture::red(self.visibility)
+        }
     }
 
     /// Where coverage and counts are added.
@@ -256,15 +296,26 @@ impl Covering {
     fn create(
         technique: &'static str,
         light: &SoftLight,
+        number: usize,
         params: &Params,
         textures: &mut dyn TextureSource,
     ) -> Result<Self, TechniqueError> {
-        let Some(side) = light
-            .sides
-            .first()
-            .filter(|_| params.get(BACKEND.name) == "texture4d")
-        else {
+        let image = light_image(params);
+        let wanted = params.get(BACKEND.name) == "texture4d" || image.is_some();
+        let Some(side) = light.sides.first().filter(|_| wanted) else {
             return Ok(Self::Exact);
+        };
+        let contents = match (image, side.projector.image()) {
+            (Some(image), Image::Square) => Contents::Coloured(image),
+            (Some(_), Image::Disc) => {
+                return Err(TechniqueError::UnsuitableLight {
+                    technique,
+                    light: number,
+                    why: "an image was asked for on a round light".to_owned(),
+                    valid: "rectangles for light-image",
+                });
+            }
+            (None, shape) => Contents::Plain(shape),
         };
         let given = params.get(TEXTURE_SIZE.name);
         let size = given.parse().ok().filter(|n| (2..=90).contains(n));
@@ -278,7 +329,7 @@ impl Covering {
             linear: params.get(TEXTURE_FILTER.name) == "quadlinear",
             vertex_centred: params.get(TEXTURE_CENTRED.name) == "vertex",
         };
-        let texture = table::create(&table, side.projector.image(), textures)?;
+        let texture = table::create(&table, &contents, textures)?;
         Ok(Self::Table(table, texture))
     }
 

@@ -4,6 +4,7 @@
 pub(super) mod count;
 pub(super) mod edges;
 pub(super) mod light;
+pub(super) mod light_image;
 pub(super) mod split_tables;
 pub(super) mod table;
 pub(super) mod wedges;

@@ -6,24 +6,38 @@ use gnomon_raster::{Format, Subresource, TextureDescriptor, TextureId};
 use gnomon_shaders::coverage::Image;
 use gnomon_shaders::coverage_table::CoverageTable;
 
+use super::light_image::LightImage;
 use crate::coverage::LightPlane;
 use crate::technique::{TechniqueError, TextureSource};
 
-/// Makes the texture; its format has 8 bits.
+/// What the light looks like.
+pub(crate) enum Contents {
+    /// One colour, of either shape: 8 bits.
+    Plain(Image),
+    /// An image on a rectangle: three half floats and one unused, since a colour in
+    /// one part of the light can be covered altogether.
+    Coloured(LightImage),
+}
+
+/// Makes the texture.
 pub(crate) fn create(
     table: &CoverageTable,
-    image: Image,
+    contents: &Contents,
     textures: &mut dyn TextureSource,
 ) -> Result<TextureId, TechniqueError> {
     let side = table.size * table.size;
-    let desc = TextureDescriptor::d2("coverage", Format::R8Unorm, side, side);
+    let format = match contents {
+        Contents::Plain(_) => Format::R8Unorm,
+        Contents::Coloured(_) => Format::Rgba16Float,
+    };
+    let desc = TextureDescriptor::d2("coverage", format, side, side);
     let texture = textures.create(&desc)?;
-    textures.write(texture, Subresource::default(), &entries(table, image))?;
+    textures.write(texture, Subresource::default(), &entries(table, contents))?;
     Ok(texture)
 }
 
 /// Twice the covered share, in the order of the texture's rows.
-fn entries(table: &CoverageTable, image: Image) -> Vec<[f32; 4]> {
+fn entries(table: &CoverageTable, contents: &Contents) -> Vec<[f32; 4]> {
     let n = table.size;
     let at = |i: u32| table.coordinate(i);
     let points: Vec<f64> = (0..n).map(at).collect();
@@ -32,7 +46,11 @@ fn entries(table: &CoverageTable, image: Image) -> Vec<[f32; 4]> {
         for column in 0..n * n {
             let p = DVec2::new(points[(column % n) as usize], points[(row % n) as usize]);
             let q = DVec2::new(points[(column / n) as usize], points[(row / n) as usize]);
-            texels.push([2.0 * covered(image, p, q) as f32, 0.0, 0.0, 1.0]);
+            let [r, g, b] = match contents {
+                Contents::Plain(image) => [covered(*image, p, q), 0.0, 0.0],
+                Contents::Coloured(image) => image.covered(p, q),
+            };
+            texels.push([2.0 * r as f32, 2.0 * g as f32, 2.0 * b as f32, 1.0]);
         }
     }
     texels

@@ -296,7 +296,7 @@ fn count_and_sign_agree_next_to_the_plane() {
     assert!(mismatched > 1000, "negative control: {mismatched}");
 }
 
-/// An edge in m pieces covers what it does in one; tables and six bits drift.
+/// An edge in m pieces covers what it does in one.
 #[test]
 fn pieces_of_an_edge_cover_what_it_does() {
     let mut random = Random(5);

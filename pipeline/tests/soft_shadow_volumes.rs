@@ -388,8 +388,9 @@ fn a_two_colour_light_is_two_half_lights() {
     ];
     let both = error(&scene, &truth, &set).all.unwrap();
     let white = error(&scene, &truth, &[]).all.unwrap();
+    // But for the pixels whose edges end at the light's centre, where filters mix.
     assert!(
-        both.rmse < 0.02 && both.rmse < 0.25 * white.rmse,
+        both.p99 < 2e-3 && both.rmse < 0.3 * white.rmse,
         "{both:?} {white:?}"
     );
 }

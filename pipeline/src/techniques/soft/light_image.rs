@@ -28,7 +28,7 @@ impl LightImage {
     /// Sixteen round lights in one: bright cells with dark ones between them.
     pub(crate) fn windows() -> Self {
         let side = 7;
-        let lit = |k: usize| k % side % 2 == 0 && k / side % 2 == 0;
+        let lit = |k: usize| (k % side).is_multiple_of(2) && (k / side).is_multiple_of(2);
         let cells = (0..side * side).map(|k| if lit(k) { [1.0; 3] } else { [0.0; 3] });
         Self {
             side,

@@ -23,18 +23,18 @@ use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
     Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureBinding, TextureDescriptor, TextureId,
 };
-use gnomon_shaders::coverage::{Edge, Image};
-use gnomon_shaders::coverage_table::CoverageTable;
-use gnomon_shaders::soft_volumes::{CountTo, CoverTo, ExactCoverage, HardPlane, Penumbra, Resolve};
+use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
 use gnomon_shaders::transform::FullScreen;
 
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::shadow_volumes::{OPEN_CASTERS, SKIP, policy};
 use super::soft::count::Counting;
+use super::soft::covering::{
+    BACKEND, Covering, LIGHT_FRAME, LIGHT_IMAGE, TEXTURE_CENTRED, TEXTURE_FILTER, TEXTURE_SIZE,
+    light_image,
+};
 use super::soft::edges::{Casters, Silhouettes};
-use super::soft::light::{LightSide, SoftLight};
-use super::soft::light_image::LightImage;
-use super::soft::table::{self, Contents};
+use super::soft::light::SoftLight;
 use super::soft::wedges::{
     AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
 };
@@ -53,48 +53,6 @@ pub(super) const WEDGE: ParamInfo = ParamInfo {
     default: "exact",
     valid: "exact|paper3|paper4",
     summary: "penumbra wedges: the penumbra itself, or as papers III and IV build them; same bits",
-};
-
-const BACKEND: ParamInfo = ParamInfo {
-    name: "backend",
-    default: "exact",
-    valid: "exact|texture4d",
-    summary: "coverage of an edge in closed form, or from paper III's 4D texture",
-};
-
-const TEXTURE_SIZE: ParamInfo = ParamInfo {
-    name: "texture-size",
-    default: "32",
-    valid: "N",
-    summary: "entries in each dimension of the 4D texture, 2 to 90",
-};
-
-const TEXTURE_FILTER: ParamInfo = ParamInfo {
-    name: "texture-filter",
-    default: "nearest",
-    valid: "nearest|quadlinear",
-    summary: "how the 4D texture is read",
-};
-
-const TEXTURE_CENTRED: ParamInfo = ParamInfo {
-    name: "texture-centred",
-    default: "cell",
-    valid: "cell|vertex",
-    summary: "entries of the 4D texture at cells' centres, as the paper's, or up to the border",
-};
-
-const LIGHT_IMAGE: ParamInfo = ParamInfo {
-    name: "light-image",
-    default: "white",
-    valid: "white|halves|windows|fire",
-    summary: "colours on a rectangle, by a coloured 4D texture: two, sixteen lights, a fire",
-};
-
-const LIGHT_FRAME: ParamInfo = ParamInfo {
-    name: "light-frame",
-    default: "0",
-    valid: "N",
-    summary: "number of the fire's frame; each has a 4D texture of its own",
 };
 
 const BUFFER: ParamInfo = ParamInfo {
@@ -191,17 +149,6 @@ impl Technique for SoftShadowVolumes {
     }
 }
 
-/// The colours on the light, where they are not one.
-fn light_image(params: &Params) -> Option<LightImage> {
-    let frame = params.get(LIGHT_FRAME.name).parse().unwrap_or(0);
-    match params.get(LIGHT_IMAGE.name) {
-        "halves" => Some(LightImage::halves()),
-        "windows" => Some(LightImage::windows()),
-        "fire" => Some(LightImage::fire(frame)),
-        _ => None,
-    }
-}
-
 /// Textures that coverage is added up in.
 struct Buffers {
     /// Red, green and blue apart.
@@ -282,78 +229,6 @@ impl Buffers {
             depth_stencil: None,
             draws: vec![full_screen(pipeline, both.map(binding).to_vec())],
         })
-    }
-}
-
-/// How coverage is found.
-#[derive(Clone, Copy)]
-enum Covering {
-    Exact,
-    Table(CoverageTable, TextureId),
-}
-
-impl Covering {
-    fn create(
-        technique: &'static str,
-        light: &SoftLight,
-        number: usize,
-        params: &Params,
-        textures: &mut dyn TextureSource,
-    ) -> Result<Self, TechniqueError> {
-        let image = light_image(params);
-        let wanted = params.get(BACKEND.name) == "texture4d" || image.is_some();
-        let Some(side) = light.sides.first().filter(|_| wanted) else {
-            return Ok(Self::Exact);
-        };
-        let contents = match (image, side.projector.image()) {
-            (Some(image), Image::Square) => Contents::Coloured(image),
-            (Some(_), Image::Disc) => {
-                return Err(TechniqueError::UnsuitableLight {
-                    technique,
-                    light: number,
-                    why: "an image was asked for on a round light".to_owned(),
-                    valid: "rectangles for light-image",
-                });
-            }
-            (None, shape) => Contents::Plain(shape),
-        };
-        let given = params.get(TEXTURE_SIZE.name);
-        let size = given.parse().ok().filter(|n| (2..=90).contains(n));
-        let table = CoverageTable {
-            size: size.ok_or(TechniqueError::BadValue {
-                technique,
-                key: TEXTURE_SIZE.name,
-                value: given.to_owned(),
-                valid: "2 to 90",
-            })?,
-            linear: params.get(TEXTURE_FILTER.name) == "quadlinear",
-            vertex_centred: params.get(TEXTURE_CENTRED.name) == "vertex",
-        };
-        let texture = table::create(&table, &contents, textures)?;
-        Ok(Self::Table(table, texture))
-    }
-
-    /// The shader of one edge.
-    fn shader(self, side: &LightSide, edge: Edge, plane: HardPlane, to: CoverTo) -> FragmentStage {
-        let light = side.projector;
-        match self {
-            Self::Exact => Penumbra {
-                light,
-                covering: ExactCoverage,
-                edge,
-                plane,
-                to,
-            }
-            .stage(),
-            Self::Table(covering, _) => Penumbra {
-                light,
-                covering,
-                edge,
-                plane,
-                to,
-            }
-            .stage(),
-        }
     }
 }
 
@@ -503,9 +378,7 @@ impl Volumes<'_> {
     /// Positions, `second`, and the coverage table where there is one.
     fn bindings(&self, second: TextureId) -> Vec<TextureBinding> {
         let mut slots = vec![binding(self.positions.texture), binding(second)];
-        if let Covering::Table(_, texture) = self.covering {
-            slots.push(binding(texture));
-        }
+        slots.extend(self.covering.texture().map(binding));
         slots
     }
 }

@@ -2,6 +2,7 @@
 //! as shaders project on them, wedges as draws, and coverage tables.
 
 pub(super) mod count;
+pub(super) mod covering;
 pub(super) mod edges;
 pub(super) mod light;
 pub(super) mod light_image;

@@ -16,7 +16,7 @@ use crate::shape;
 pub(super) fn single_silhouette() -> Scene {
     let light = Light::horizontal_square(DVec3::Y * 2.8, 3.0);
     let cube = solid("cube", shape::cuboid(DVec3::Y * 0.8, DVec3::ONE), STEEL);
-    let camera = Camera::look_at([0.9, 0.6, 2.4], [0.0, 0.25, 0.0]);
+    let camera = Camera::look_at([2.0, 1.1, 4.6], [0.0, 0.2, 0.0]);
     Scene::new(camera, vec![light], vec![floor(4.0), cube])
 }
 

@@ -2,11 +2,18 @@
 //!
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
+//! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
+//! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
 //!
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
 //! that uses it decides targets, blending and tests.
 
+pub mod coverage;
+pub mod coverage_table;
+pub mod soft_volumes;
+pub mod split_volumes;
 pub mod surface;
 pub mod transform;
 mod vector;
@@ -25,5 +32,13 @@ macro_rules! stages {
         }
     )+ };
 }
-stages!(VertexStage: transform::Points, transform::HomogeneousPoints, transform::Surfaces);
-stages!(FragmentStage: surface::Constant, surface::Lambert, surface::Phong);
+stages!(VertexStage:
+    transform::Points, transform::HomogeneousPoints, transform::Surfaces, transform::FullScreen,
+    transform::Facets, soft_volumes::HardQuads, soft_volumes::EyeCount);
+stages!(FragmentStage:
+    surface::Constant, surface::Lambert, surface::Phong, surface::AmbientWithPosition,
+    surface::Shadowed<surface::Lambert>, surface::Shadowed<surface::Phong>,
+    soft_volumes::HardCount, soft_volumes::Resolve,
+    split_volumes::SplitPenumbra, split_volumes::CombineGroups, split_volumes::AddVisibility,
+    soft_volumes::Penumbra<soft_volumes::ExactCoverage>,
+    soft_volumes::Penumbra<coverage_table::CoverageTable>);

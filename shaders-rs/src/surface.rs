@@ -3,11 +3,14 @@
 //!
 //! Output is linear light in attachment 0. [`Lambert`] and [`Phong`] read the
 //! varyings of [`crate::transform::Surfaces`]. A surface seen from behind is
-//! shaded with its normal turned round.
+//! shaded with its normal turned round. [`Shadowed`] dims either by a visibility
+//! that an earlier pass left in a texture; [`AmbientWithPosition`] leaves the
+//! positions that such a pass works with.
 
-use gnomon_raster::shader::{Fragment, FragmentShader};
+use gnomon_raster::math::{dot3, length};
+use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::simd::{each3, each4};
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::{F32, I32, Lanes};
 
 use crate::vector::V3;
 
@@ -26,6 +29,111 @@ impl FragmentShader for Constant {
     }
 }
 
+/// Directions of rays through pixels: `first + x · right + y · down` at (x, y)
+/// pixels from the top left corner; not normalised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelRays {
+    /// Where rays start, relative to the origin of positions.
+    pub eye: [f32; 3],
+    /// Direction through the top left corner of the image.
+    pub first: [f32; 3],
+    /// Change to the next column.
+    pub right: [f32; 3],
+    /// Change to the next row.
+    pub down: [f32; 3],
+}
+
+/// Ambient light in attachment 0, and in attachment 1 the world-space position,
+/// with w 1 where shadow may fall and 0 where it may not. Varyings are those of
+/// [`crate::transform::Facets`].
+///
+/// Vertices are snapped to 1/256 pixel, and interpolated positions with them; at
+/// penumbrae of a few pixels that is visible in the last digits. So the position
+/// is where the pixel's ray meets the facet's plane, and the interpolated one only
+/// where the facet is seen edge on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientWithPosition {
+    /// The colour.
+    pub ambient: [f32; 4],
+    /// Whether shadow falls on the surface.
+    pub receives: bool,
+    /// The camera.
+    pub rays: PixelRays,
+}
+
+/// Cosine between ray and facet, below which positions are interpolated.
+const EDGE_ON: f32 = 1e-3;
+
+impl FragmentShader for AmbientWithPosition {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        Constant(self.ambient).shade(l, f);
+        let (x, y) = (f.x(), f.y());
+        let rays = &self.rays;
+        let direction = each3(
+            #[inline(always)]
+            |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
+        );
+        let normal = each3(
+            #[inline(always)]
+            |i| f.varying(3 + i),
+        );
+        let slope = dot3(normal, direction);
+        let steep = slope.abs().gt(length(direction) * EDGE_ON);
+        let distance = f.varying(6) / slope;
+        let [px, py, pz] = each3(
+            #[inline(always)]
+            |i| steep.select_f32(direction[i] * distance + rays.eye[i], f.varying(i)),
+        );
+        let w = if self.receives { 1.0 } else { 0.0 };
+        f.set_color(1, [px, py, pz, F32::splat(l, w)]);
+    }
+}
+
+/// Diffuse and specular light of a surface, linear RGB.
+pub trait Reflection: Send + Sync {
+    /// The light towards the eye, all of the light source being visible.
+    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3];
+}
+
+/// A surface dimmed by the visibility of the light: texture 0 at the fragment's
+/// own pixel, `texel · scale + offset` limited to 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shadowed<S> {
+    /// The surface.
+    pub surface: S,
+    /// Factor of the texel.
+    pub scale: f32,
+    /// Added to the product.
+    pub offset: f32,
+    /// Visibility of each colour by itself; else red's for all.
+    pub coloured: bool,
+}
+
+impl<S: Reflection> FragmentShader for Shadowed<S> {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentOutputs {
+            textures: 1,
+            ..FragmentOutputs::default()
+        }
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let at = [f.column(), f.row(), I32::splat(l, 0)];
+        let texel = f.fetch_texel(0, at, 0);
+        let light = self.surface.light(l, f);
+        let [r, g, b] = each3(
+            #[inline(always)]
+            |i| {
+                let visible = texel[if self.coloured { i } else { 0 }];
+                light[i] * (visible * self.scale + self.offset).clamp(0.0, 1.0)
+            },
+        );
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+    }
+}
+
 /// Diffuse light: `diffuse · max(n·l, 0)`, alpha 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambert {
@@ -35,16 +143,23 @@ pub struct Lambert {
     pub light: [f32; 4],
 }
 
-impl FragmentShader for Lambert {
+impl Reflection for Lambert {
     #[inline(always)]
-    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3] {
         let (normal, position) = inputs(f);
         let to_light = position.towards(self.light);
         let cosine = cosine(normal, to_light, facing(f)).max(F32::splat(l, 0.0));
-        let [r, g, b] = each3(
+        each3(
             #[inline(always)]
-            |c| cosine * self.diffuse[c],
-        );
+            |i| cosine * self.diffuse[i],
+        )
+    }
+}
+
+impl FragmentShader for Lambert {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let [r, g, b] = self.light(l, f);
         f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
     }
 }
@@ -64,9 +179,9 @@ pub struct Phong {
     pub eye: [f32; 3],
 }
 
-impl FragmentShader for Phong {
+impl Reflection for Phong {
     #[inline(always)]
-    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3] {
         let (normal, position) = inputs(f);
         let [x, y, z] = self.eye;
         let (to_light, to_eye) = (
@@ -82,11 +197,18 @@ impl FragmentShader for Phong {
         let highlight = n_l
             .gt(zero)
             .select_f32(power(mirrored, self.shininess), zero);
-        let [r, g, b] = each3(
+        each3(
             #[inline(always)]
-            |c| diffuse * self.lambert.diffuse[c] + highlight * self.specular[c],
-        );
-        f.set_color(0, [r, g, b, zero]);
+            |i| diffuse * self.lambert.diffuse[i] + highlight * self.specular[i],
+        )
+    }
+}
+
+impl FragmentShader for Phong {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let [r, g, b] = self.light(l, f);
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
     }
 }
 

@@ -7,7 +7,7 @@
 
 use gnomon_raster::shader::{Interpolation, Vertex, VertexShader};
 use gnomon_raster::simd::{each3, each4};
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::{F32, LANES, Lanes};
 
 /// Rows of the matrix; row r of the product is
 /// `((m[r][0]·x + m[r][1]·y) + m[r][2]·z) + m[r][3]·w`.
@@ -77,5 +77,47 @@ impl VertexShader for Surfaces {
         }
         let [x, y, z] = position;
         v.set_position(self.0.apply([x, y, z, F32::splat(l, 1.0)]));
+    }
+}
+
+/// Attributes x, y, z and a facet's plane: unit normal and distance from the eye.
+/// Varyings: position in 0..3, the plane in 3..7, flat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets(pub ClipFromWorld);
+
+impl VertexShader for Facets {
+    fn varyings(&self) -> &[Interpolation] {
+        const P: Interpolation = Interpolation::Perspective;
+        const F: Interpolation = Interpolation::Flat;
+        &[P, P, P, F, F, F, F]
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        for i in 0..7 {
+            let attribute = v.attribute(i);
+            v.set_varying(i, attribute);
+        }
+        let [x, y, z] = [v.attribute(0), v.attribute(1), v.attribute(2)];
+        v.set_position(self.0.apply([x, y, z, F32::splat(l, 1.0)]));
+    }
+}
+
+/// Three vertices without data that cover the whole viewport at depth 0; no
+/// varyings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FullScreen;
+
+impl VertexShader for FullScreen {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        let ids = v.vertex_index();
+        let (mut x, mut y) = ([-1.0; LANES], [-1.0; LANES]);
+        for (lane, id) in ids.into_iter().enumerate() {
+            x[lane] = if id == 1 { 3.0 } else { -1.0 };
+            y[lane] = if id == 2 { 3.0 } else { -1.0 };
+        }
+        let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+        v.set_position([F32::from_array(l, &x), F32::from_array(l, &y), zero, one]);
     }
 }

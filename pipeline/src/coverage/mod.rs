@@ -246,6 +246,18 @@ impl Projection {
     }
 }
 
+/// Share of a square between the rays from its centre through two points, on the
+/// side where they are less than half a turn apart; for look-up tables.
+pub(crate) fn square_share(p: DVec2, q: DVec2) -> f64 {
+    square::sector(p, q) / 4.0
+}
+
+/// Area of the square swept counter-clockwise from the direction (1, -1) to that of
+/// p, 0 to 4: corners are at whole numbers.
+pub(crate) fn square_swept(p: DVec2) -> f64 {
+    square::swept(p)
+}
+
 /// Whether a receiver is on the umbra side of the edge's hard shadow quad: the
 /// one predicate for shadow count, sign of the coverage, and wedge halves.
 /// Receivers on the plane, and edges that point at the centre, count as outside.

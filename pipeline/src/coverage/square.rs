@@ -35,7 +35,7 @@ pub(super) fn sector(p: DVec2, q: DVec2) -> f64 {
 }
 
 /// Area swept counter-clockwise from the direction (1, -1) to that of p, 0 to 4.
-fn swept(p: DVec2) -> f64 {
+pub(super) fn swept(p: DVec2) -> f64 {
     if p.x.abs() >= p.y.abs() {
         let along = if p.x == 0.0 { 0.0 } else { p.y / p.x };
         let sides = if p.x >= 0.0 { 0.5 } else { 2.5 };

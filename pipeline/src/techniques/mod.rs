@@ -3,7 +3,13 @@
 mod near_pyramid;
 mod passes;
 mod shadow_volumes;
+mod soft;
+mod soft_shadow_volumes;
+mod soft_shadow_volumes_optimised;
 mod unshadowed;
+mod visibility;
 
 pub(crate) use shadow_volumes::ShadowVolumes;
+pub(crate) use soft_shadow_volumes::SoftShadowVolumes;
+pub(crate) use soft_shadow_volumes_optimised::SoftShadowVolumesOptimised;
 pub(crate) use unshadowed::Unshadowed;

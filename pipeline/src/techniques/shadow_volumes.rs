@@ -38,14 +38,14 @@ const METHOD: ParamInfo = ParamInfo {
     summary: "auto: z-pass for casters that cannot shadow the near rectangle, z-fail for the others",
 };
 
-const OPEN_CASTERS: ParamInfo = ParamInfo {
+pub(super) const OPEN_CASTERS: ParamInfo = ParamInfo {
     name: "open-casters",
     default: "refuse",
     valid: "refuse|generalised",
     summary: "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
 };
 
-const SKIP: ParamInfo = ParamInfo {
+pub(super) const SKIP: ParamInfo = ParamInfo {
     name: "skip",
     default: "on",
     valid: "on|off",
@@ -126,16 +126,7 @@ struct Casters<'a> {
 
 impl<'a> Casters<'a> {
     fn new(scene: &'a Scene, params: &Params) -> Result<Self, TechniqueError> {
-        let policy: CasterPolicy =
-            params
-                .get(OPEN_CASTERS.name)
-                .parse()
-                .map_err(|UnknownPolicy(value)| TechniqueError::BadValue {
-                    technique: ShadowVolumes.name(),
-                    key: OPEN_CASTERS.name,
-                    value,
-                    valid: OPEN_CASTERS.valid,
-                })?;
+        let policy = policy(ShadowVolumes.name(), params)?;
         let casters = scene
             .objects
             .iter()
@@ -235,6 +226,20 @@ impl<'a> Casters<'a> {
             &indices,
         )
     }
+}
+
+/// What is to be done with casters that are not closed.
+pub(super) fn policy(
+    technique: &'static str,
+    params: &Params,
+) -> Result<CasterPolicy, TechniqueError> {
+    let bad = |UnknownPolicy(value)| TechniqueError::BadValue {
+        technique,
+        key: OPEN_CASTERS.name,
+        value,
+        valid: OPEN_CASTERS.valid,
+    };
+    params.get(OPEN_CASTERS.name).parse().map_err(bad)
 }
 
 fn wrap_warning(object: &Object, volume: &ShadowVolume) -> Option<Warning> {

@@ -12,6 +12,7 @@ mod fractal;
 mod palette;
 mod parallel_plates;
 mod peers;
+mod soft_errors;
 mod spheres;
 
 use super::Scene;
@@ -47,6 +48,8 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("fractal", "two solids floating over a 100,352-triangle fractal landscape", fractal::scene),
     entry("columns", "5x4 columns with boxes on top, seen from low", columns::scene),
     entry("parallel-plates", "square plate parallel to light and floor: soft shadows in closed form", parallel_plates::scene),
+    entry("single-silhouette", "cube close to a large light: the silhouette of the light's centre misses the umbra", soft_errors::single_silhouette),
+    entry("overlap", "two crossing bars: penumbrae that overlap are not to be summed", soft_errors::overlap),
     entry("creature", "biped of 15 overlapping closed parts", creature::scene),
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),

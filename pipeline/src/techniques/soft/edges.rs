@@ -1,0 +1,120 @@
+//! Silhouette edges of all casters for one light, with what decides sides.
+//!
+//! One plane per edge, through the light's centre, rounded once: hard shadow
+//! quads and penumbrae use its very bits. The eye's own hard count and its sides
+//! are taken a hair in front of the eye, in f64, so that an eye on a plane is on
+//! one side of it for both.
+
+use glam::DVec3;
+
+use crate::caster::{Caster, CasterPolicy, Counting, RefusedCaster};
+use crate::light::HardLight;
+use crate::mesh::narrow;
+use crate::scene::{Camera, Scene};
+use crate::silhouette::{Orientation, Silhouette, light_facing};
+use crate::wedge::hard_plane;
+use crate::winding::volume_winding;
+
+/// A silhouette edge.
+pub(crate) struct SoftEdge {
+    /// Ends, world space, the occluder on the left seen from the light.
+    pub(crate) ends: [DVec3; 2],
+    /// Normal of its hard plane, out of the umbra; zero where the edge points at
+    /// the light and has none.
+    pub(crate) normal: [f32; 3],
+    /// Whether the eye is on the umbra side.
+    pub(crate) eye_inside: bool,
+}
+
+/// Silhouettes of one or all casters.
+#[derive(Default)]
+pub(crate) struct Silhouettes {
+    /// Edges, caster after caster.
+    pub(crate) edges: Vec<SoftEdge>,
+    /// How many casters hide the light's centre from the eye.
+    pub(crate) eye_count: i32,
+}
+
+/// The casters of a scene, examined once for all lights.
+pub(crate) struct Casters<'a> {
+    scene: &'a Scene,
+    examined: Vec<(usize, Caster)>,
+}
+
+impl<'a> Casters<'a> {
+    pub(crate) fn new(scene: &'a Scene, policy: CasterPolicy) -> Result<Self, RefusedCaster> {
+        let casters = scene
+            .objects
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| o.casts && !o.mesh.triangles().is_empty());
+        let examined = casters.map(|(i, o)| Ok((i, Caster::of_object(o, policy)?)));
+        Ok(Self {
+            scene,
+            examined: examined.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Silhouettes seen from `centre`, of all casters together.
+    pub(crate) fn silhouettes(&self, centre: DVec3) -> Silhouettes {
+        let mut all = Silhouettes::default();
+        for caster in self.each(centre) {
+            all.edges.extend(caster.edges);
+            all.eye_count += caster.eye_count;
+        }
+        all
+    }
+
+    /// Silhouettes seen from `centre`, caster by caster.
+    pub(crate) fn each(&self, centre: DVec3) -> Vec<Silhouettes> {
+        let light = HardLight::Point(centre);
+        let eye = beside_eye(&self.scene.camera);
+        let of = |(number, caster): &(usize, Caster)| {
+            let mesh = &self.scene.objects[*number].mesh;
+            let facing = light_facing(mesh, light);
+            let orientation = match caster.counting(mesh, light) {
+                Counting::LightFacing => Orientation::closed(&facing),
+                Counting::AllTriangles => Orientation::generalised(&facing),
+            };
+            let silhouette = Silhouette::new(mesh, caster.adjacency(), &orientation);
+            let point = |i: u32| mesh.position(i);
+            let edges = silhouette.edges.iter();
+            Silhouettes {
+                edges: edges
+                    .map(|&[a, b]| SoftEdge::new([point(a), point(b)], centre, eye))
+                    .collect(),
+                eye_count: volume_winding(&caster.volume(mesh, light), eye),
+            }
+        };
+        self.examined.iter().map(of).collect()
+    }
+}
+
+impl SoftEdge {
+    fn new(ends: [DVec3; 2], centre: DVec3, eye: DVec3) -> Self {
+        let plane = hard_plane(centre, ends);
+        let normal = plane.map_or(DVec3::ZERO, |p| p.normal);
+        Self {
+            ends,
+            normal: narrow(normal),
+            eye_inside: normal.dot(eye - centre) < 0.0,
+        }
+    }
+
+    /// Whether the edge has a hard plane; without one it covers nothing.
+    pub(crate) fn has_plane(&self) -> bool {
+        self.normal != [0.0; 3]
+    }
+
+    /// Away from the light through both ends, not normalised.
+    pub(crate) fn away(&self, centre: DVec3) -> [DVec3; 2] {
+        self.ends.map(|e| e - centre)
+    }
+}
+
+/// A point next to the eye, on no plane that a scene is likely to have.
+fn beside_eye(camera: &Camera) -> DVec3 {
+    let [right, up, forward] = camera.basis();
+    let hair = camera.near * 1e-6;
+    camera.eye + (forward + right * 0.389_1 + up * 0.217_3) * hair
+}

@@ -1,0 +1,430 @@
+//! Shaders of soft shadow volumes against their f64 twins, and 8-bit buffers
+//! against whole numbers, each drawn over the screen of a small GPU.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use gnomon_pipeline::coverage::{LightPlane, SphereOutline, umbra_side};
+use gnomon_pipeline::light::LightShape;
+use gnomon_raster::shader::{FragmentOutputs, FragmentStage, ScalarFragmentOutput, per_fragment};
+use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
+use gnomon_raster::{
+    ColorAttachment, CommandList, Draw, Format, Gpu, GpuConfig, IndexBuffer, LoadOp, RenderPass,
+    RenderPipeline, Sampler, StoreOp, SubmitReport, Subresource, TextureBinding, TextureDescriptor,
+    TextureId, VertexBuffer,
+};
+use gnomon_shaders::coverage::{FlatLight, Image, Projector, SphereLight};
+use gnomon_shaders::soft_volumes::{
+    CountTo, CoverTo, ExactCoverage, HardCount, HardPlane, HardQuads, Penumbra,
+};
+use gnomon_shaders::split_volumes::{AddVisibility, CAPACITY, Combination, CombineGroups};
+use gnomon_shaders::transform::{ClipFromWorld, FullScreen};
+
+const SIDE: u32 = 64;
+const COUNT: usize = (SIDE * SIDE) as usize;
+
+fn gpu() -> Gpu {
+    Gpu::new(GpuConfig {
+        threads: 1,
+        ..GpuConfig::default()
+    })
+    .unwrap()
+}
+
+fn texture(gpu: &mut Gpu, format: Format) -> TextureId {
+    let desc = TextureDescriptor::d2("t", format, SIDE, SIDE);
+    gpu.create_texture(&desc).unwrap()
+}
+
+fn full_screen(fragment: FragmentStage, target: ColorTargetState, from: &[TextureId]) -> Draw {
+    let pipeline = RenderPipeline {
+        label: "test".into(),
+        vertex: FullScreen.stage(),
+        fragment: Some(fragment),
+        primitive: PrimitiveState::default(),
+        depth_stencil: DepthStencilState::default(),
+        color_targets: vec![target],
+    };
+    let binding = |&texture: &TextureId| TextureBinding {
+        texture,
+        sampler: Sampler::default(),
+    };
+    Draw {
+        textures: from.iter().map(binding).collect(),
+        ..Draw::vertices_only("test", &Arc::new(pipeline), 3)
+    }
+}
+
+fn submit(gpu: &mut Gpu, to: TextureId, load: LoadOp<[f32; 4]>, draws: Vec<Draw>) -> SubmitReport {
+    let pass = RenderPass {
+        label: "test".into(),
+        color: vec![ColorAttachment {
+            texture: to,
+            subresource: Subresource::default(),
+            load,
+            store: StoreOp::Store,
+        }],
+        depth_stencil: None,
+        draws,
+    };
+    gpu.submit(&CommandList { passes: vec![pass] }).unwrap()
+}
+
+fn red(gpu: &Gpu, texture: TextureId) -> Vec<f32> {
+    let texels = gpu.texture(texture).unwrap();
+    let texels = texels.read_color(Subresource::default()).unwrap();
+    texels.iter().map(|t| t.0[0]).collect()
+}
+
+/// A small multiplicative generator: the tests have to be the same everywhere.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self, size: f64) -> DVec3 {
+        let mut one = || size * (2.0 * self.unit() - 1.0);
+        DVec3::new(one(), one(), one())
+    }
+}
+
+fn narrow(v: DVec3) -> [f32; 3] {
+    v.to_array().map(|c| c as f32)
+}
+
+fn wide(v: DVec3) -> DVec3 {
+    DVec3::from_array(narrow(v).map(f64::from))
+}
+
+/// The shader's light at the origin, facing -z, and the rows of its coordinates.
+fn projector(shape: &LightShape) -> (Projector, [DVec3; 3]) {
+    let rows = [DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z];
+    let flat = |image, size: f64| {
+        let rows = [rows[0] / size, rows[1] / size, rows[2]];
+        let light = FlatLight {
+            centre: [0.0; 3],
+            axes: rows.map(narrow),
+            image,
+        };
+        (Projector::Flat(light), rows)
+    };
+    match *shape {
+        LightShape::Rectangle { edge_u, .. } => flat(Image::Square, edge_u.length() / 2.0),
+        LightShape::Disc { radius, .. } => flat(Image::Disc, radius),
+        LightShape::Sphere { radius, .. } => {
+            let light = SphereLight {
+                centre: [0.0; 3],
+                radius: radius as f32,
+                seen: true,
+            };
+            (Projector::Sphere(light), [DVec3::X, DVec3::Y, DVec3::Z])
+        }
+        _ => unreachable!(),
+    }
+}
+
+fn shapes() -> [LightShape; 3] {
+    let centre = DVec3::ZERO;
+    [
+        LightShape::Rectangle {
+            centre,
+            edge_u: DVec3::X,
+            edge_v: DVec3::NEG_Y,
+        },
+        LightShape::Disc {
+            centre,
+            normal: DVec3::NEG_Z,
+            radius: 0.5,
+        },
+        LightShape::Sphere {
+            centre,
+            radius: 0.5,
+        },
+    ]
+}
+
+/// Signed coverage of random edges from random receivers, in lanes and in f64.
+#[test]
+fn lanes_agree_with_the_twin() {
+    let mut random = Random(7);
+    for shape in shapes() {
+        let (light, rows) = projector(&shape);
+        let plane = LightPlane::new(&shape, SphereOutline::Seen).unwrap();
+        let (mut worst, mut compared, mut covering) = (0.0f64, 0, 0);
+        for _ in 0..40 {
+            let centre = DVec3::new(0.0, 0.0, -2.0) + random.point(0.5);
+            let along = random.point(0.8);
+            let ends = [centre - along, centre + along].map(wide);
+            let normal = (ends[1] - ends[0]).cross(-ends[0]).normalize();
+            let receivers: Vec<DVec3> = (0..COUNT)
+                .map(|_| wide(DVec3::new(0.0, 0.0, -4.0) + random.point(0.9)))
+                .collect();
+            let mut gpu = gpu();
+            let positions = texture(&mut gpu, Format::Rgba32Float);
+            let out = texture(&mut gpu, Format::R32Float);
+            let texels: Vec<[f32; 4]> = receivers
+                .iter()
+                .map(|p| [p.x as f32, p.y as f32, p.z as f32, 1.0])
+                .collect();
+            let target = gpu.texture_mut(positions).unwrap();
+            target.write_color(Subresource::default(), &texels).unwrap();
+            let shader = Penumbra {
+                light,
+                covering: ExactCoverage,
+                edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
+                plane: HardPlane(narrow(normal)),
+                to: CoverTo::Visibility,
+            };
+            let draw = full_screen(shader.stage(), ColorTargetState::OPAQUE, &[positions; 2]);
+            submit(&mut gpu, out, LoadOp::Clear([9.0; 4]), vec![draw]);
+            for (p, got) in receivers.iter().zip(red(&gpu, out)) {
+                let projection = plane.seen_from(*p).unwrap();
+                let share = projection.coverage(ends);
+                let sign = if umbra_side(DVec3::ZERO, ends, *p) {
+                    1.0
+                } else {
+                    -1.0
+                };
+                // At the light's centre the coverage of one edge jumps.
+                let near = projection.clip(ends).is_some_and(|[a, b]| {
+                    let line = (b - a).normalize_or_zero();
+                    let off = a.perp_dot(line).abs();
+                    off < 1e-3 || a.length().min(b.length()) < 0.02
+                });
+                if !near {
+                    worst = worst.max((f64::from(got) - sign * share).abs());
+                    compared += 1;
+                    covering += i32::from(share > 0.0);
+                }
+            }
+        }
+        println!("{shape:?}: {worst:e} of {compared}, {covering} covering");
+        assert!(covering > 10_000 && worst < 1e-5, "{shape:?}: {worst:e}");
+    }
+}
+
+/// Counts one quad over the whole screen, seen from outside it.
+fn count_everywhere(normal: DVec3, positions: TextureId) -> Draw {
+    let identity = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|k| if i == k { 1.0 } else { 0.0 }));
+    let pipeline = RenderPipeline {
+        label: "count".into(),
+        vertex: HardQuads(ClipFromWorld(identity)).stage(),
+        fragment: Some(
+            HardCount {
+                centre: [0.0; 3],
+                to: CountTo::Visibility,
+            }
+            .stage(),
+        ),
+        primitive: PrimitiveState::default(),
+        depth_stencil: DepthStencilState::default(),
+        color_targets: vec![ColorTargetState::ADDITIVE],
+    };
+    let corners = [[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]];
+    let [x, y, z] = narrow(normal);
+    let vertex = |[u, v]: [f32; 2]| [u, v, 0.0, 1.0, x, y, z, 0.0];
+    let vertices = VertexBuffer {
+        data: corners.into_iter().flat_map(vertex).collect(),
+        stride: 8,
+    };
+    let indices = Arc::new(IndexBuffer::new(vec![0, 1, 2]));
+    let mut draw = Draw::indexed("count", &Arc::new(pipeline), &Arc::new(vertices), &indices);
+    draw.textures = vec![TextureBinding {
+        texture: positions,
+        sampler: Sampler::default(),
+    }];
+    draw
+}
+
+/// Half of the light is seen on a quad's plane, and a few ulp beside it: count and
+/// sign agree to the bit. With another plane for the sign they would not.
+#[test]
+fn count_and_sign_agree_next_to_the_plane() {
+    let mut random = Random(11);
+    let (light, rows) = projector(&shapes()[0]);
+    let mut mismatched = 0;
+    for _ in 0..20 {
+        let slope = random.point(0.3);
+        let along = DVec3::new(1.5, slope.x, 0.0);
+        let middle = DVec3::new(0.0, slope.y, -2.0);
+        let ends = [middle - along, middle + along].map(wide);
+        let normal = (ends[1] - ends[0]).cross(-ends[0]).normalize();
+        let nudged =
+            |v: f64, ulps: i32| f32::from_bits(((v as f32).to_bits() as i32 + ulps) as u32);
+        let texels: Vec<[f32; 4]> = (0..COUNT)
+            .map(|k| {
+                // On the plane, behind the middle of the edge, and -2..=2 ulp off.
+                let e = ends[0] + (ends[1] - ends[0]) * (0.4 + 0.2 * random.unit());
+                let p = e * (1.5 + random.unit());
+                let ulps = k as i32 % 5 - 2;
+                [p.x as f32, nudged(p.y, ulps), p.z as f32, 1.0]
+            })
+            .collect();
+        let mut gpu = gpu();
+        let positions = texture(&mut gpu, Format::Rgba32Float);
+        let target = gpu.texture_mut(positions).unwrap();
+        target.write_color(Subresource::default(), &texels).unwrap();
+        let mut seen_with = |plane: DVec3| {
+            let shader = Penumbra {
+                light,
+                covering: ExactCoverage,
+                edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
+                plane: HardPlane(narrow(plane)),
+                to: CoverTo::Visibility,
+            };
+            let out = texture(&mut gpu, Format::R32Float);
+            let wedge = full_screen(shader.stage(), ColorTargetState::ADDITIVE, &[positions; 2]);
+            let draws = vec![count_everywhere(normal, positions), wedge];
+            submit(&mut gpu, out, LoadOp::Clear([1.0; 4]), draws);
+            red(&gpu, out)
+        };
+        for v in seen_with(normal) {
+            assert!((v - 0.5).abs() < 1e-4, "{v}");
+        }
+        let other = (normal + DVec3::new(0.0, 0.0, 3e-7)).normalize();
+        mismatched += seen_with(other)
+            .iter()
+            .filter(|v| (**v - 0.5).abs() > 0.9)
+            .count();
+    }
+    assert!(mismatched > 1000, "negative control: {mismatched}");
+}
+
+/// An edge in m pieces covers what it does in one.
+#[test]
+fn pieces_of_an_edge_cover_what_it_does() {
+    let mut random = Random(5);
+    let (light, rows) = projector(&shapes()[0]);
+    let ends = [DVec3::new(-0.9, 0.13, -2.0), DVec3::new(0.8, 0.31, -2.2)].map(wide);
+    let normal = (ends[1] - ends[0]).cross(-ends[0]).normalize();
+    let texels: Vec<[f32; 4]> = (0..COUNT)
+        .map(|_| {
+            let [x, y, z] = narrow(DVec3::new(0.0, 0.3, -4.0) + random.point(0.8));
+            [x, y, z, 1.0]
+        })
+        .collect();
+    let mut gpu = gpu();
+    let positions = texture(&mut gpu, Format::Rgba32Float);
+    let target = gpu.texture_mut(positions).unwrap();
+    target.write_color(Subresource::default(), &texels).unwrap();
+    let mut covered = |m: u32| {
+        let at = |k: u32| ends[0] + (ends[1] - ends[0]) * (f64::from(k) / f64::from(m));
+        let pieces = (0..m).map(|k| {
+            let piece = [at(k), at(k + 1)];
+            let shader = Penumbra {
+                light,
+                covering: ExactCoverage,
+                edge: piece.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
+                plane: HardPlane(narrow(normal)),
+                to: CoverTo::Visibility,
+            };
+            full_screen(shader.stage(), ColorTargetState::ADDITIVE, &[positions; 2])
+        });
+        let draws = pieces.collect();
+        let out = texture(&mut gpu, Format::R32Float);
+        submit(&mut gpu, out, LoadOp::Clear([0.0; 4]), draws);
+        red(&gpu, out)
+    };
+    let whole = covered(1);
+    for m in [2, 5, 16, 64] {
+        let drift = whole.iter().zip(covered(m)).map(|(a, b)| (a - b).abs());
+        let drift = drift.fold(0.0, f32::max);
+        println!("{m} pieces: {drift:e}");
+        assert!(drift < 1e-5, "{m}: {drift:e}");
+    }
+}
+
+/// One value of 12 bits, as the shader splits it.
+fn contribution(v: u32) -> FragmentStage {
+    let channels = [0, 3, 6, 9].map(|shift| (v >> shift & 7) as f32 / 255.0);
+    per_fragment(FragmentOutputs::default(), move |_| {
+        ScalarFragmentOutput::color(channels)
+    })
+}
+
+/// Adds contributions and combines; `hard` is the hard visibility before.
+fn hidden_after(values: &[u32], hard: f32) -> (f32, u64) {
+    let mut gpu = gpu();
+    let [added, taken] = [(); 2].map(|()| texture(&mut gpu, Format::Rgba8Unorm));
+    let count = texture(&mut gpu, Format::R32Float);
+    let [before, out] = [(); 2].map(|()| texture(&mut gpu, Format::Rgba32Float));
+    let draws = values
+        .iter()
+        .map(|v| full_screen(contribution(*v), ColorTargetState::ADDITIVE, &[]));
+    let report = submit(&mut gpu, added, LoadOp::Clear([0.0; 4]), draws.collect());
+    submit(&mut gpu, count, LoadOp::Clear([hard; 4]), Vec::new());
+    let shader = CombineGroups { first: true };
+    let sources = [count, added, taken, before];
+    let draw = full_screen(shader.stage(), ColorTargetState::OPAQUE, &sources);
+    submit(&mut gpu, out, LoadOp::DontCare, vec![draw]);
+    let saturated = report.passes[0]
+        .totals()
+        .events
+        .blend_saturated
+        .iter()
+        .sum();
+    (red(&gpu, out)[0], saturated)
+}
+
+#[test]
+fn thirty_six_full_contributions_fit_and_the_next_is_reported() {
+    assert_eq!(CAPACITY, 36);
+    let full = |n: usize| vec![4095; n];
+    // 1 - (0.5 - 36 + 36) is one half, exactly.
+    assert_eq!(hidden_after(&full(36), 0.5 - 36.0), (0.5, 0));
+    let (hidden, saturated) = hidden_after(&full(37), 0.5 - 37.0);
+    assert!(hidden > 0.6, "the 37th is lost: {hidden}");
+    assert_eq!(saturated, u64::from(4 * SIDE * SIDE));
+}
+
+#[test]
+fn random_streams_are_whole_sums() {
+    let mut random = Random(3);
+    for n in [1, 5, 17, 36] {
+        let values: Vec<u32> = (0..n).map(|_| (random.unit() * 4096.0) as u32).collect();
+        let sum: u32 = values.iter().sum();
+        let whole = (sum / 4095) as f32;
+        let rest = sum % 4095;
+        let (hidden, saturated) = hidden_after(&values, -whole);
+        let want = 1.0 - rest as f32 / 4095.0;
+        assert!(
+            (hidden - want).abs() < 1e-5 && saturated == 0,
+            "{n}: {hidden} {want}"
+        );
+    }
+}
+
+/// 16% and 4% of the light: the sum is 20%, the paper's rule and the bounded one
+/// give 18%.
+#[test]
+fn sixteen_and_four_are_eighteen() {
+    let mut gpu = gpu();
+    let [added, taken] = [(); 2].map(|()| texture(&mut gpu, Format::Rgba8Unorm));
+    let hard = texture(&mut gpu, Format::R32Float);
+    let combined = [(); 2].map(|()| texture(&mut gpu, Format::Rgba32Float));
+    for (turn, hidden) in [0.16f32, 0.04].into_iter().enumerate() {
+        submit(&mut gpu, hard, LoadOp::Clear([1.0 - hidden; 4]), Vec::new());
+        let shader = CombineGroups { first: turn == 0 };
+        let sources = [hard, added, taken, combined[1 - turn]];
+        let draw = full_screen(shader.stage(), ColorTargetState::OPAQUE, &sources);
+        submit(&mut gpu, combined[turn], LoadOp::DontCare, vec![draw]);
+    }
+    for (rule, want) in [
+        (Combination::Sum, 0.20),
+        (Combination::Paper, 0.18),
+        (Combination::Bounded, 0.18),
+    ] {
+        let out = texture(&mut gpu, Format::R32Float);
+        let add = AddVisibility { rule, weight: 1.0 };
+        let draw = full_screen(add.stage(), ColorTargetState::ADDITIVE, &[combined[1]]);
+        submit(&mut gpu, out, LoadOp::Clear([0.0; 4]), vec![draw]);
+        let got = 1.0 - red(&gpu, out)[0];
+        assert!((got - want).abs() < 1e-6, "{rule:?}: {got}");
+    }
+}

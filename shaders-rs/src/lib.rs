@@ -2,11 +2,13 @@
 //!
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
+//! * [`penumbra`]: penumbra wedges of papers I and II
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
 //!
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
 //! that uses it decides targets, blending and tests.
 
+pub mod penumbra;
 pub mod surface;
 pub mod transform;
 mod vector;
@@ -27,3 +29,7 @@ macro_rules! stages {
 }
 stages!(VertexStage: transform::Points, transform::HomogeneousPoints, transform::Surfaces);
 stages!(FragmentStage: surface::Constant, surface::Lambert, surface::Phong);
+stages!(FragmentStage:
+    penumbra::crossing::WedgeCrossing, penumbra::inside::WedgeInside,
+    penumbra::buffers::TileDepths, penumbra::buffers::Boundary,
+    penumbra::buffers::StencilCounts);

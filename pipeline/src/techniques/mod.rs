@@ -2,8 +2,14 @@
 
 mod near_pyramid;
 mod passes;
+mod penumbra;
+mod penumbra_wedges;
+mod penumbra_wedges_restructured;
 mod shadow_volumes;
 mod unshadowed;
+mod visibility;
 
+pub(crate) use penumbra_wedges::PenumbraWedges;
+pub(crate) use penumbra_wedges_restructured::PenumbraWedgesRestructured;
 pub(crate) use shadow_volumes::ShadowVolumes;
 pub(crate) use unshadowed::Unshadowed;

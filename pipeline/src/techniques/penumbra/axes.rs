@@ -35,7 +35,9 @@ pub(in crate::techniques) fn further(
     }
     out.extend(depth_range(view, wedge).into_iter().flatten());
     let extent = [f64::from(size[0]), f64::from(size[1]), 1.0, 1.0];
-    out.into_iter().filter_map(|p| with_margin(p, extent)).collect()
+    out.into_iter()
+        .filter_map(|p| with_margin(p, extent))
+        .collect()
 }
 
 /// The combination of two planes, with positive factors, without coordinate k.
@@ -79,7 +81,11 @@ fn depth_range(view: &View, wedge: &LinkedWedge) -> [Option<[f64; 4]>; 2] {
 }
 
 fn with_margin(p: [f64; 4], extent: [f64; 4]) -> Option<(ScreenPlane, f32)> {
-    let largest = p.iter().zip(extent).map(|(c, e)| c.abs() * e).fold(0.0, f64::max);
+    let largest = p
+        .iter()
+        .zip(extent)
+        .map(|(c, e)| c.abs() * e)
+        .fold(0.0, f64::max);
     if !(largest > 0.0 && largest.is_finite()) {
         return None;
     }

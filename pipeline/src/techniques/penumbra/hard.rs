@@ -7,9 +7,7 @@
 
 use std::sync::Arc;
 
-use gnomon_raster::state::{
-    ColorTargetState, CompareFunction, DepthState, DepthStencilState,
-};
+use gnomon_raster::state::{ColorTargetState, CompareFunction, DepthState, DepthStencilState};
 use gnomon_raster::{Draw, RenderPipeline, VertexBuffer};
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::buffers::Boundary;

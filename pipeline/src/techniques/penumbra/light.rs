@@ -62,7 +62,12 @@ mod tests {
         let sphere = LightSphere::of(&square).unwrap();
         assert!((sphere.radius * sphere.radius * std::f64::consts::PI - 4.0).abs() < 1e-12);
         assert_eq!(sphere.centre, DVec3::Y);
-        assert!(substitution(0, &square).unwrap().message.contains("rectangle"));
+        assert!(
+            substitution(0, &square)
+                .unwrap()
+                .message
+                .contains("rectangle")
+        );
     }
 
     #[test]

@@ -24,14 +24,22 @@ impl Met {
     pub(in crate::techniques) fn warnings(&self, light: usize) -> Vec<Warning> {
         let l = &self.linked;
         let counted = [
-            ("extra-wedges", l.extra_wedges, "extra wedges fill the turns at acute vertices"),
+            (
+                "extra-wedges",
+                l.extra_wedges,
+                "extra wedges fill the turns at acute vertices",
+            ),
             (
                 "nearly-parallel-edges",
                 l.nearly_parallel,
                 "silhouette edges point at the light within 1.2 degrees and were collapsed; \
                  shadows next to the object may be off",
             ),
-            ("zero-length-edges", l.zero_length, "silhouette edges have no length and were left out"),
+            (
+                "zero-length-edges",
+                l.zero_length,
+                "silhouette edges have no length and were left out",
+            ),
             (
                 "edges-aimed-at-light",
                 l.aimed_at_centre,
@@ -53,8 +61,16 @@ impl Met {
                 l.dropped_loops,
                 "silhouette loops have fewer than two usable edges; their shadow is hard",
             ),
-            ("unbalanced-silhouettes", self.unbalanced, "silhouettes do not close and cast nothing"),
-            ("umbra-gaps", self.gaps, "pieces of the umbra's boundary have no wedge"),
+            (
+                "unbalanced-silhouettes",
+                self.unbalanced,
+                "silhouettes do not close and cast nothing",
+            ),
+            (
+                "umbra-gaps",
+                self.gaps,
+                "pieces of the umbra's boundary have no wedge",
+            ),
         ];
         let warning = |(code, count, what): (&'static str, u64, &str)| Warning {
             code,

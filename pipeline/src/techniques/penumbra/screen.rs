@@ -49,7 +49,11 @@ impl Screen {
     }
 
     /// Front, back and side planes of a wedge.
-    pub(in crate::techniques) fn wedge(&self, view: &View, wedge: &LinkedWedge) -> [ScreenPlane; 4] {
+    pub(in crate::techniques) fn wedge(
+        &self,
+        view: &View,
+        wedge: &LinkedWedge,
+    ) -> [ScreenPlane; 4] {
         wedge.planes().map(|p| self.plane(view, &p))
     }
 
@@ -96,11 +100,10 @@ pub(in crate::techniques) fn rates(
     interpolation: Interpolation,
 ) -> IntensityRates {
     let rate = |plane: &Plane, direction: DVec3| plane.normal.dot(direction).abs();
-    let ratio =
-        |k: usize| {
-            let d = wedge.side_directions.0[k];
-            over(rate(&wedge.back, d), rate(&wedge.front, d))
-        };
+    let ratio = |k: usize| {
+        let d = wedge.side_directions.0[k];
+        over(rate(&wedge.back, d), rate(&wedge.front, d))
+    };
     let [first, second] = [0, 1].map(|k| rate(&wedge.sides[k], wedge.along));
     IntensityRates {
         back_over_front: [ratio(0), ratio(1)],

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec4;
-use gnomon_raster::{IndexBuffer, VertexBuffer};
+use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, TextureBinding, VertexBuffer};
 
 use super::volume::Triangle;
 use crate::techniques::passes::{self, View};
@@ -15,6 +15,20 @@ use crate::wedge::paper1::LinkedWedge;
 pub(in crate::techniques) struct Faces {
     pub(in crate::techniques) vertices: Arc<VertexBuffer>,
     pub(in crate::techniques) indices: Arc<IndexBuffer>,
+}
+
+impl Faces {
+    pub(in crate::techniques) fn draw(
+        &self,
+        label: &str,
+        pipeline: RenderPipeline,
+        textures: Vec<TextureBinding>,
+    ) -> Draw {
+        Draw {
+            textures,
+            ..Draw::indexed(label, &Arc::new(pipeline), &self.vertices, &self.indices)
+        }
+    }
 }
 
 /// How a wedge is drawn.
@@ -37,8 +51,10 @@ impl WedgeShape {
             indices: passes::index_buffer(triangles),
         };
         let corners = front_corners(wedge);
-        let in_front =
-            |t: &&[u32; 3]| t.iter().all(|&i| corners.contains(&mesh.vertices[i as usize]));
+        let in_front = |t: &&[u32; 3]| {
+            t.iter()
+                .all(|&i| corners.contains(&mesh.vertices[i as usize]))
+        };
         let (front, others): (Vec<&[u32; 3]>, Vec<_>) = mesh.triangles.iter().partition(in_front);
         let expected = if wedge.edge[0] == wedge.edge[1] { 1 } else { 2 };
         let all = faces(&mesh.triangles);

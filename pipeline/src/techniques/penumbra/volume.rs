@@ -77,7 +77,13 @@ impl SoftVolume {
         settings: &LinkedSettings,
         met: &mut Met,
     ) {
-        let wedges = link(points, sphere.centre, sphere.radius, settings, &mut met.linked);
+        let wedges = link(
+            points,
+            sphere.centre,
+            sphere.radius,
+            settings,
+            &mut met.linked,
+        );
         let sides = if wedges.is_empty() {
             hard_sides(points, sphere.centre)
         } else {
@@ -179,10 +185,7 @@ fn patches(points: &[DVec3], sides: &[Side]) -> Vec<Triangle> {
     let mut balance: BTreeMap<(Bits, Bits), (i32, [DVec3; 2])> = BTreeMap::new();
     let mut add = |[a, b]: [DVec3; 2], count: i32| {
         if a != b {
-            balance
-                .entry((bits(a), bits(b)))
-                .or_insert((0, [a, b]))
-                .0 += count;
+            balance.entry((bits(a), bits(b))).or_insert((0, [a, b])).0 += count;
         }
     };
     for k in 0..points.len() {
@@ -203,7 +206,10 @@ fn patches(points: &[DVec3], sides: &[Side]) -> Vec<Triangle> {
 
 /// The cap at infinity: a fan from the loop's mean direction over the far ends.
 fn bottom(points: &[DVec3], centre: DVec3, sides: &[Side]) -> Vec<Triangle> {
-    let sum: DVec3 = points.iter().map(|p| (*p - centre).normalize_or_zero()).sum();
+    let sum: DVec3 = points
+        .iter()
+        .map(|p| (*p - centre).normalize_or_zero())
+        .sum();
     let Some(mean) = sum.try_normalize() else {
         return Vec::new();
     };

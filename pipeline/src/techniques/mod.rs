@@ -4,7 +4,7 @@ mod near_pyramid;
 mod passes;
 mod penumbra;
 mod penumbra_wedges;
-mod penumbra_wedges_restructured;
+pub(crate) mod penumbra_wedges_restructured;
 mod shadow_volumes;
 mod unshadowed;
 mod visibility;

@@ -18,9 +18,9 @@ use crate::technique::{ParamInfo, Params, TechniqueError, TextureSource};
 
 pub(super) const INTERPOLATION: ParamInfo = ParamInfo {
     name: "interpolation",
-    default: "smoothstep",
+    default: "linear",
     valid: "linear|smoothstep",
-    summary: "between full light and full shadow: linear, or 3s^2 - 2s^3 as for a sphere",
+    summary: "between full light and full shadow: linear, or 3s^2 - 2s^3, nearer to a sphere",
 };
 
 pub(super) const EXTRA_WEDGES: ParamInfo = ParamInfo {
@@ -73,3 +73,6 @@ pub(super) fn intensity_pass(
 pub(super) fn cleared(intensity: f32) -> LoadOp<[f32; 4]> {
     LoadOp::Clear([intensity, 0.0, 0.0, 0.0])
 }
+
+#[cfg(test)]
+mod tests;

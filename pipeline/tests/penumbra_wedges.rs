@@ -1,0 +1,333 @@
+//! Penumbra wedges of papers I and II on the emulated GPU: hard shadows in the
+//! limit, the same buffers whatever is culled and in however many passes, and what
+//! culling saves.
+
+use gnomon_pipeline::light::{Light, LightShape};
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{Camera, Scene, builtin};
+use gnomon_pipeline::technique::{self, Params, VisibilityOutput};
+use gnomon_pipeline::tile_traffic::{Measured, measure};
+use gnomon_raster::{Gpu, GpuConfig, SimdLevel, Subresource};
+
+const SIZE: [u32; 2] = [160, 120];
+const ORIGINAL: &str = "penumbra-wedges";
+const RESTRUCTURED: &str = "penumbra-wedges-restructured";
+
+fn scene(name: &str) -> Scene {
+    builtin::build(name).unwrap()
+}
+
+/// The scene with its first light as a sphere of the given radius, at its centre.
+fn with_sphere(mut scene: Scene, radius: f64) -> Scene {
+    let gnomon_pipeline::light::HardLight::Point(centre) = scene.lights[0].hard() else {
+        panic!("{}: parallel light", scene.name);
+    };
+    scene.lights[0].shape = LightShape::Sphere { centre, radius };
+    scene
+}
+
+fn params(technique: &str, set: &[&str]) -> Params {
+    Params::parse(technique::find(technique).unwrap(), set).unwrap()
+}
+
+fn picture(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
+    let settings = RenderSettings {
+        size: SIZE,
+        ..RenderSettings::default()
+    };
+    let found = technique::find(technique).unwrap();
+    render(scene, found, &params(technique, set), &settings).unwrap()
+}
+
+/// The light-intensity buffer of the first light, as stored.
+fn buffer_with(scene: &Scene, technique: &str, set: &[&str], config: GpuConfig) -> Vec<i16> {
+    let mut gpu = Gpu::new(config).unwrap();
+    let found = technique::find(technique).unwrap();
+    let params = params(technique, set);
+    let frame = found.frame(scene, SIZE, &params, &mut gpu).unwrap();
+    gpu.submit(&frame.list).unwrap();
+    let VisibilityOutput::Red { texture, .. } = frame.outputs.visibility else {
+        panic!("{:?}", frame.outputs.visibility);
+    };
+    let texels = gpu.texture(texture).unwrap();
+    let texels = texels.read_color(Subresource::default()).unwrap();
+    texels.iter().map(|t| t.0[0] as i16).collect()
+}
+
+fn buffer(scene: &Scene, technique: &str, set: &[&str]) -> Vec<i16> {
+    buffer_with(scene, technique, set, GpuConfig::default())
+}
+
+fn bits(visibility: &[f32]) -> Vec<u32> {
+    visibility.iter().map(|v| v.to_bits()).collect()
+}
+
+fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
+#[test]
+fn radius_zero_is_the_hard_mask_byte_for_byte() {
+    for name in [
+        "cylinder",
+        "columns",
+        "creature",
+        "demo",
+        "adversarial-eye-in-shadow",
+        "adversarial-near-plane",
+    ] {
+        let scene = with_sphere(scene(name), 0.0);
+        let hard = picture(&scene, "shadow-volumes", &[]);
+        for technique in [ORIGINAL, RESTRUCTURED] {
+            let soft = picture(&scene, technique, &[]);
+            assert!(
+                bits(&soft.visibility) == bits(&hard.visibility),
+                "{name}, {technique}"
+            );
+            assert!(soft.srgb == hard.srgb, "{name}, {technique}");
+        }
+        let wide = with_sphere(scene, 0.3);
+        let soft = picture(&wide, RESTRUCTURED, &[]);
+        let other = differing(&bits(&soft.visibility), &bits(&hard.visibility));
+        assert!(other > 50, "negative control: {name}, {other}");
+    }
+}
+
+/// Every wedge vanishes with the light, and so does every difference.
+#[test]
+fn small_lights_approach_the_hard_mask() {
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let hard = picture(&with_sphere(scene("creature"), 0.0), technique, &[]);
+        let count = |radius| {
+            let soft = picture(&with_sphere(scene("creature"), radius), technique, &[]);
+            differing(&bits(&soft.visibility), &bits(&hard.visibility))
+        };
+        let counts = [1e-1, 1e-2, 1e-3, 1e-4].map(count);
+        eprintln!("{technique}: pixels that differ from the hard mask {counts:?}");
+        assert!(counts.is_sorted_by(|a, b| a >= b), "{counts:?}");
+        assert!(counts[0] > 500 && counts[3] <= 8, "{counts:?}");
+    }
+}
+
+/// Scenes where the restructured technique is compared with itself.
+fn hard_cases() -> Vec<Scene> {
+    let mut cases: Vec<Scene> = ["columns", "creature", "adversarial-eye-in-shadow"]
+        .into_iter()
+        .map(scene)
+        .collect();
+    let mut sky = scene("spheres");
+    sky.camera = Camera::look_at([4.0, 1.0, 7.0], [0.0, 2.2, 0.0]);
+    cases.push(sky);
+    cases
+}
+
+#[test]
+fn the_buffer_does_not_depend_on_culling_passes_tiles_or_axes() {
+    for scene in hard_cases() {
+        for method in ["auto", "zfail"] {
+            let method = format!("method={method}");
+            let reference = buffer(&scene, RESTRUCTURED, &[&method, "culling=none"]);
+            let dark = reference.iter().filter(|v| (1..255).contains(*v)).count();
+            assert!(dark > 100, "{}: {dark} in penumbrae", scene.name);
+            let mut ways = vec![vec!["culling=none", "passes=three"]];
+            for tile in [
+                "tile=2", "tile=4", "tile=8", "tile=16", "tile=32", "tile=64", "tile=128",
+                "tile=256",
+            ] {
+                ways.push(vec!["culling=zminmax", tile]);
+            }
+            ways.push(vec!["culling=zmax", "tile=8", "passes=three"]);
+            ways.push(vec!["culling=zminmax", "tile=4", "separating-axis=full"]);
+            ways.push(vec![
+                "culling=zminmax",
+                "tile=16",
+                "separating-axis=full",
+                "passes=three",
+            ]);
+            for mut way in ways {
+                way.push(&method);
+                let other = buffer(&scene, RESTRUCTURED, &way);
+                assert!(
+                    other == reference,
+                    "{}: {way:?}: {} pixels differ",
+                    scene.name,
+                    differing(&other, &reference)
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn z_pass_equals_z_fail_where_the_eye_is_outside_and_not_where_it_is_inside() {
+    for name in ["cylinder", "columns", "creature"] {
+        let scene = scene(name);
+        let [zpass, zfail] = ["method=zpass", "method=zfail"]
+            .map(|m| picture(&scene, RESTRUCTURED, &[m]).visibility);
+        let other = differing(&bits(&zpass), &bits(&zfail));
+        eprintln!("{name}: z-pass and z-fail differ in {other} pixels");
+        assert!(other <= 4, "{name}: {other}");
+    }
+    let inside = scene("adversarial-eye-in-shadow");
+    let [zpass, zfail] =
+        ["method=zpass", "method=zfail"].map(|m| picture(&inside, RESTRUCTURED, &[m]).visibility);
+    let other = differing(&bits(&zpass), &bits(&zfail));
+    assert!(other > 500, "negative control: {other}");
+}
+
+/// The two papers' algorithms add up to the same buffer; where the eye is in
+/// shadow too, if the first starts with the eye's own intensity.
+#[test]
+fn restructuring_changes_no_intensity() {
+    for name in ["cylinder", "columns", "adversarial-eye-in-shadow"] {
+        let scene = scene(name);
+        let first = picture(&scene, ORIGINAL, &[]).visibility;
+        let second = picture(&scene, RESTRUCTURED, &[]).visibility;
+        let apart = |a: &[f32], b: &[f32]| {
+            let off = |(a, b): (&f32, &f32)| (a - b).abs() > 1.5 / 255.0;
+            a.iter().zip(b).filter(|p| off(*p)).count()
+        };
+        let count = apart(&first, &second);
+        eprintln!("{name}: {count} pixels apart by more than a step");
+        assert!(count <= first.len() / 1000, "{name}: {count}");
+        if name == "adversarial-eye-in-shadow" {
+            let lit = picture(&scene, ORIGINAL, &["start=lit"]).visibility;
+            let count = apart(&lit, &second);
+            assert!(count > 500, "negative control: {count}");
+        }
+    }
+}
+
+/// The eye moves along a line through a penumbra into the umbra: no jump.
+#[test]
+fn an_eye_may_be_anywhere() {
+    for step in 0..8 {
+        let mut scene = with_sphere(scene("cylinder"), 0.5);
+        let x = -0.2 - 0.35 * f64::from(step);
+        scene.camera = Camera::look_at([x, 0.3, -0.9], [x - 1.0, 0.0, -2.0]);
+        let first = picture(&scene, ORIGINAL, &[]).visibility;
+        let second = picture(&scene, RESTRUCTURED, &[]).visibility;
+        let off = |(a, b): (&f32, &f32)| (a - b).abs() > 2.5 / 255.0;
+        let count = first.iter().zip(&second).filter(|p| off(*p)).count();
+        assert!(count <= first.len() / 500, "eye at x = {x}: {count}");
+    }
+}
+
+fn measured(scene: &Scene, set: &[&str]) -> Measured {
+    let params = params(RESTRUCTURED, set);
+    measure(scene, SIZE, &params, GpuConfig::default()).unwrap()
+}
+
+#[test]
+fn culling_saves_reads_and_no_writes_and_the_model_counts_what_the_gpu_reads() {
+    for scene in hard_cases() {
+        let name = &scene.name;
+        for passes in ["passes=single", "passes=three"] {
+            let run = |culling: &str, axes: &str| {
+                let m = measured(&scene, &[passes, culling, axes, "tile=8"]);
+                assert_eq!(
+                    m.traffic.depth_reads, m.gpu.traffic.tex[0].read_accesses,
+                    "{name}, {passes}, {culling}"
+                );
+                assert_eq!(m.traffic.fragments, m.gpu.fragments.generated, "{name}");
+                assert_eq!(m.gpu.events.blend_saturated, [0; 4], "{name}");
+                m.traffic
+            };
+            let faces = "separating-axis=faces";
+            let none = run("culling=none", faces);
+            let zmax = run("culling=zmax", faces);
+            let both = run("culling=zminmax", faces);
+            let full = run("culling=zminmax", "separating-axis=full");
+            eprintln!("{name}, {passes}:\n  {none:?}\n  {zmax:?}\n  {both:?}\n  {full:?}");
+            let reads = [none, zmax, both, full].map(|t| t.depth_reads);
+            assert!(reads.is_sorted_by(|a, b| a >= b), "{name}: {reads:?}");
+            assert!(reads[2] * 10 < reads[0] * 9, "{name}: {reads:?}");
+            for other in [zmax, both, full] {
+                assert_eq!(other.intensity_writes, none.intensity_writes, "{name}");
+                assert_eq!(other.stencil_writes, none.stencil_writes, "{name}");
+                assert_eq!(other.fragments, none.fragments, "{name}");
+            }
+            assert_eq!(none.tested, 0);
+            assert_eq!(zmax.tested, both.tested);
+            assert!(zmax.culled < both.culled && both.culled <= full.culled);
+        }
+    }
+}
+
+#[test]
+fn a_single_pass_reads_and_writes_less_than_three() {
+    for name in ["columns", "creature", "cylinder"] {
+        let scene = scene(name);
+        let [one, three] =
+            ["passes=single", "passes=three"].map(|p| measured(&scene, &[p, "tile=8"]).traffic);
+        let writes =
+            |t: &gnomon_pipeline::tile_traffic::TileTraffic| t.intensity_writes + t.stencil_writes;
+        eprintln!(
+            "{name}: depth reads {} of {}, writes {} of {}",
+            one.depth_reads,
+            three.depth_reads,
+            writes(&one),
+            writes(&three)
+        );
+        assert!(one.depth_reads < three.depth_reads, "{name}");
+        assert!(writes(&one) < writes(&three), "{name}");
+    }
+}
+
+#[test]
+fn execution_changes_no_bit() {
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let scene = scene("creature");
+        let reference = buffer(&scene, technique, &[]);
+        for (threads, tile, simd) in [
+            (1, 16, SimdLevel::Scalar),
+            (3, 128, SimdLevel::detect()),
+            (2, 32, SimdLevel::Scalar),
+        ] {
+            let config = GpuConfig {
+                threads,
+                tile,
+                simd,
+                skip: false,
+            };
+            let other = buffer_with(&scene, technique, &[], config);
+            assert!(other == reference, "{technique}: {threads} {tile} {simd}");
+        }
+    }
+}
+
+/// Every kind of light, several at once, and one buffer each.
+#[test]
+fn several_lights_of_all_kinds() {
+    let mut scene = scene("cylinder");
+    let position = glam::DVec3::new(-2.0, 4.0, 1.0);
+    let light = |shape| Light {
+        shape,
+        colour: [0.4; 3],
+    };
+    scene.lights.push(light(LightShape::Sphere {
+        centre: position,
+        radius: 0.4,
+    }));
+    scene.lights.push(light(LightShape::Point { position }));
+    scene.lights.push(light(LightShape::Disc {
+        centre: position,
+        normal: glam::DVec3::Y,
+        radius: 0.5,
+    }));
+    scene.lights.push(light(LightShape::Directional {
+        towards: glam::DVec3::new(0.5, 2.0, 0.3),
+    }));
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let all = picture(&scene, technique, &[]);
+        let alone = picture(&scene, technique, &["light=0"]);
+        assert_eq!(bits(&all.visibility), bits(&alone.visibility));
+        let labels: Vec<&str> = all.report.passes.iter().map(|p| p.label.as_str()).collect();
+        assert!(labels.contains(&"lit 4") && labels.contains(&"lit 0"));
+        let spheres = all.warnings.iter().filter(|w| w.code == "light-as-sphere");
+        assert_eq!(spheres.count(), 2, "{:?}", all.warnings);
+        let hard = picture(&scene, "shadow-volumes", &["light=4"]);
+        let parallel = picture(&scene, technique, &["light=4"]);
+        assert_eq!(bits(&parallel.visibility), bits(&hard.visibility));
+    }
+}

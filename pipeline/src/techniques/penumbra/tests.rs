@@ -8,6 +8,7 @@ use super::casters::{self, Examined};
 use super::light::LightSphere;
 use super::report::Met;
 use super::volume::SoftVolume;
+use crate::light::{HardLight, LightShape};
 use crate::scene::{Scene, builtin};
 use crate::technique::{self, Params, VisibilityOutput};
 use crate::techniques::passes::View;
@@ -141,26 +142,53 @@ fn compare(scene: &Scene, depth: &[f32], buffer: &[f32], smooth: bool) -> Compar
 
 const BOTH: [&str; 2] = ["penumbra-wedges", "penumbra-wedges-restructured"];
 
+/// The scene with its first light as a sphere.
+fn with_radius(name: &str, radius: f64) -> Scene {
+    let mut scene = builtin::build(name).unwrap();
+    let HardLight::Point(centre) = scene.lights[0].hard() else {
+        panic!("{name}");
+    };
+    scene.lights[0].shape = LightShape::Sphere { centre, radius };
+    scene
+}
+
+fn holds(scene: &Scene, technique: &str) {
+    let (depth, buffer) = drawn(scene, technique, &["interpolation=smoothstep"]);
+    let compared = compare(scene, &depth, &buffer, true);
+    let Compared {
+        surface,
+        penumbra,
+        off,
+    } = &compared;
+    let name = &scene.name;
+    let some = &off[..off.len().min(4)];
+    eprintln!(
+        "{name}, {technique}: {surface} surface, {penumbra} penumbra, {} off {some:?}",
+        off.len()
+    );
+    assert!(*penumbra > 50, "{name}, {technique}");
+    assert!(off.len() * 1000 <= *surface, "{name}, {technique}: {off:?}");
+}
+
 #[test]
 fn buffers_hold_the_sum_of_the_paper() {
-    for name in ["cylinder", "parallel-plates", "columns", "spheres"] {
-        let scene = builtin::build(name).unwrap();
-        for technique in BOTH {
-            let (depth, buffer) = drawn(&scene, technique, &["interpolation=smoothstep"]);
-            let compared = compare(&scene, &depth, &buffer, true);
-            let Compared {
-                surface,
-                penumbra,
-                off,
-            } = &compared;
-            eprintln!(
-                "{name}, {technique}: {surface} surface, {penumbra} penumbra, {} off {:?}",
-                off.len(),
-                &off[..off.len().min(4)]
-            );
-            assert!(*penumbra > 100, "{name}, {technique}");
-            assert!(off.len() * 1000 <= *surface, "{name}, {technique}: {off:?}");
-        }
+    for (name, radius) in [
+        ("cylinder", 0.5),
+        ("parallel-plates", 0.5),
+        ("columns", 0.1),
+        ("spheres", 0.15),
+    ] {
+        let scene = with_radius(name, radius);
+        BOTH.iter().for_each(|technique| holds(&scene, technique));
+    }
+}
+
+/// Also where side planes meet above the floor, which the first paper's way of
+/// adding up does not survive.
+#[test]
+fn restructured_buffers_hold_the_sum_for_large_lights() {
+    for (name, radius) in [("columns", 0.5642), ("creature", 0.4)] {
+        holds(&with_radius(name, radius), BOTH[1]);
     }
 }
 

@@ -2,11 +2,14 @@
 //! limit, the same buffers whatever is culled and in however many passes, and what
 //! culling saves.
 
-use gnomon_pipeline::light::{Light, LightShape};
+use glam::DVec3;
+use gnomon_pipeline::light::{HardLight, Light, LightShape};
+use gnomon_pipeline::mesh::Shading;
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Camera, Scene, builtin};
+use gnomon_pipeline::scene::{Camera, Material, Object, Scene, builtin};
+use gnomon_pipeline::shape;
 use gnomon_pipeline::technique::{self, Params, VisibilityOutput};
-use gnomon_pipeline::tile_traffic::{Measured, measure};
+use gnomon_pipeline::tile_traffic::{Measured, TileTraffic, measure};
 use gnomon_raster::{Gpu, GpuConfig, SimdLevel, Subresource};
 
 const SIZE: [u32; 2] = [160, 120];
@@ -19,7 +22,7 @@ fn scene(name: &str) -> Scene {
 
 /// The scene with its first light as a sphere of the given radius, at its centre.
 fn with_sphere(mut scene: Scene, radius: f64) -> Scene {
-    let gnomon_pipeline::light::HardLight::Point(centre) = scene.lights[0].hard() else {
+    let HardLight::Point(centre) = scene.lights[0].hard() else {
         panic!("{}: parallel light", scene.name);
     };
     scene.lights[0].shape = LightShape::Sphere { centre, radius };
@@ -110,6 +113,67 @@ fn small_lights_approach_the_hard_mask() {
         );
         // Wedges thinner than f32 resolves may be missed here and there.
         assert!(counts[0] > 100 && counts[3] * 1000 <= SIZE[0] as usize * SIZE[1] as usize);
+    }
+}
+
+/// Under a long straight edge, seen from pixels of the floor: the largest error
+/// against the part of the light's disc beyond the edge.
+fn error_under_a_straight_edge(technique: &str, interpolation: &str) -> f64 {
+    let (radius, centre) = (0.05, DVec3::new(1.0, 6.0, 0.0));
+    let roof = shape::cuboid(DVec3::new(-10.0, 2.0, 0.0), DVec3::new(20.0, 0.02, 40.0));
+    let floor = shape::plane(6.0, 0.0).into_mesh(Shading::Flat).unwrap();
+    let light = Light {
+        shape: LightShape::Sphere { centre, radius },
+        colour: [1.0; 3],
+    };
+    let objects = vec![
+        Object::new("floor", floor, Material::matt([1.0; 3])).receiver_only(),
+        Object::new(
+            "roof",
+            roof.into_mesh(Shading::Flat).unwrap(),
+            Material::matt([1.0; 3]),
+        ),
+    ];
+    let camera = Camera {
+        fov_y_degrees: 4.0,
+        ..Camera::look_at([0.9, 1.2, 2.0], [-0.496, 0.0, 0.0])
+    };
+    let scene = Scene::new(camera, vec![light], objects);
+    let drawn = picture(
+        &scene,
+        technique,
+        &[&format!("interpolation={interpolation}")],
+    );
+    let rays = camera.eye_rays(SIZE[0], SIZE[1]);
+    let edge = DVec3::new(0.0, 1.99, 0.0);
+    let (mut largest, mut partly) = (0.0f64, 0);
+    for (i, &visible) in drawn.visibility.iter().enumerate() {
+        let (x, y) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+        let d = rays.direction(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let p = camera.eye + d * (-camera.eye.y / d.y);
+        if visible.is_nan() || d.y >= 0.0 || p.x.abs() > 3.0 || p.z.abs() > 3.0 {
+            continue;
+        }
+        // Distance of the light's centre beyond the plane of pixel and edge, in radii.
+        let normal = (edge - p).cross(DVec3::Z).normalize();
+        let h = ((centre - p).dot(normal) * normal.x.signum() / radius).clamp(-1.0, 1.0);
+        let hidden = (libm::acos(h) - h * (1.0 - h * h).sqrt()) / std::f64::consts::PI;
+        largest = largest.max((f64::from(visible) - (1.0 - hidden)).abs());
+        partly += usize::from(h.abs() < 1.0);
+    }
+    assert!(partly > 300, "{partly} pixels in the penumbra");
+    largest
+}
+
+#[test]
+fn interpolation_errors_are_those_of_a_discs_segment() {
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let [linear, smooth] =
+            ["linear", "smoothstep"].map(|i| error_under_a_straight_edge(technique, i));
+        eprintln!("{technique}: linear {linear:.4}, smoothstep {smooth:.4}");
+        // 0.0577 and 0.0394, the buffer's half step, and the light's nearness.
+        assert!((linear - 0.0577).abs() < 0.003, "{technique}: {linear}");
+        assert!((smooth - 0.0394).abs() < 0.003, "{technique}: {smooth}");
     }
 }
 
@@ -271,8 +335,7 @@ fn a_single_pass_reads_and_writes_less_than_three() {
         let scene = scene(name);
         let [one, three] =
             ["passes=single", "passes=three"].map(|p| measured(&scene, &[p, "tile=8"]).traffic);
-        let writes =
-            |t: &gnomon_pipeline::tile_traffic::TileTraffic| t.intensity_writes + t.stencil_writes;
+        let writes = |t: &TileTraffic| t.intensity_writes + t.stencil_writes;
         eprintln!(
             "{name}: depth reads {} of {}, writes {} of {}",
             one.depth_reads,
@@ -311,7 +374,7 @@ fn execution_changes_no_bit() {
 #[test]
 fn several_lights_of_all_kinds() {
     let mut scene = scene("cylinder");
-    let position = glam::DVec3::new(-2.0, 4.0, 1.0);
+    let position = DVec3::new(-2.0, 4.0, 1.0);
     let light = |shape| Light {
         shape,
         colour: [0.4; 3],
@@ -323,11 +386,11 @@ fn several_lights_of_all_kinds() {
     scene.lights.push(light(LightShape::Point { position }));
     scene.lights.push(light(LightShape::Disc {
         centre: position,
-        normal: glam::DVec3::Y,
+        normal: DVec3::Y,
         radius: 0.5,
     }));
     scene.lights.push(light(LightShape::Directional {
-        towards: glam::DVec3::new(0.5, 2.0, 0.3),
+        towards: DVec3::new(0.5, 2.0, 0.3),
     }));
     for technique in [ORIGINAL, RESTRUCTURED] {
         let all = picture(&scene, technique, &[]);

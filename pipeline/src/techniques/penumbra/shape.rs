@@ -8,7 +8,7 @@ use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, TextureBinding, VertexBuf
 use super::volume::Triangle;
 use crate::techniques::passes::{self, View};
 use crate::techniques::visibility::homogeneous;
-use crate::wedge::paper1::LinkedWedge;
+use crate::wedge::paper1::{LinkedWedge, Overlap};
 
 /// Triangles of one kind, ready to draw.
 #[derive(Clone)]
@@ -36,7 +36,7 @@ pub(in crate::techniques) struct WedgeShape {
     /// The umbra's boundary.
     pub(in crate::techniques) front: Faces,
     /// All other faces; `None` where the boundary is more than the wedge's front
-    /// face, because the side planes meet.
+    /// face, because the side planes meet in the front plane.
     pub(in crate::techniques) others: Option<Faces>,
     /// All faces of the wedge.
     pub(in crate::techniques) all: Faces,
@@ -58,7 +58,8 @@ impl WedgeShape {
         let (front, others): (Vec<&[u32; 3]>, Vec<_>) = mesh.triangles.iter().partition(in_front);
         let expected = if wedge.edge[0] == wedge.edge[1] { 1 } else { 2 };
         let all = faces(&mesh.triangles);
-        if wedge.overlap().is_some() || front.len() != expected {
+        let cut = matches!(wedge.overlap(), Some(Overlap::Front(_) | Overlap::Both(_)));
+        if cut || front.len() != expected {
             return Self {
                 front: triangles(view, &wedge.front_quad()),
                 others: None,

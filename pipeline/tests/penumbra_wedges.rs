@@ -96,6 +96,56 @@ fn radius_zero_is_the_hard_mask_byte_for_byte() {
     }
 }
 
+#[test]
+fn what_takes_no_shadow_is_fully_lit() {
+    let mut point = with_sphere(scene("cylinder"), 0.0);
+    point.objects[0].receives = false;
+    let hard = picture(&point, "shadow-volumes", &[]);
+    let wide = with_sphere(point.clone(), 0.5);
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let soft = picture(&point, technique, &[]);
+        assert!(
+            bits(&soft.visibility) == bits(&hard.visibility),
+            "{technique}"
+        );
+        let dark = |scene: &Scene| {
+            let drawn = picture(scene, technique, &[]).visibility;
+            drawn.iter().filter(|v| **v < 1.0).count()
+        };
+        let mut receiving = wide.clone();
+        receiving.objects[0].receives = true;
+        let [own, all] = [&wide, &receiving].map(dark);
+        assert!(own > 50 && all > own + 200, "{technique}: {own} of {all}");
+    }
+}
+
+/// Whatever the scene: visibility is a number in 0..=1 at every surface, none is
+/// NaN on the way, and sums that saturate are counted.
+#[test]
+fn every_scene_gives_visibility_within_bounds() {
+    for entry in builtin::SCENES.iter() {
+        let scene = scene(entry.name);
+        for technique in [ORIGINAL, RESTRUCTURED] {
+            let drawn = picture(&scene, technique, &[]);
+            for (v, depth) in drawn.visibility.iter().zip(&drawn.depth) {
+                let fine = if *depth >= 1.0 {
+                    v.is_nan()
+                } else {
+                    (0.0..=1.0).contains(v)
+                };
+                assert!(fine, "{}, {technique}: {v} at depth {depth}", entry.name);
+            }
+            let codes: Vec<&str> = drawn.warnings.iter().map(|w| w.code).collect();
+            assert!(!codes.contains(&"nan"), "{}: {codes:?}", entry.name);
+            // 300 nested umbrae are more than the buffer holds.
+            let nested = entry.name.contains("nested") || entry.name == "adversarial";
+            let full = codes.contains(&"blend-saturated");
+            assert!(nested || !full, "{}: {codes:?}", entry.name);
+            assert!(full || !entry.name.contains("nested"), "{codes:?}");
+        }
+    }
+}
+
 /// Every wedge vanishes with the light, and so does every difference.
 #[test]
 fn small_lights_approach_the_hard_mask() {

@@ -294,6 +294,23 @@ impl<'a> SceneDraws<'a> {
         }
     }
 
+    /// Draws of the objects that take no shadow, where they are seen, in one
+    /// colour; for a pass with one colour attachment and the depth of the frame.
+    pub(super) fn not_receiving(&self, label: &str, colour: [f32; 4]) -> Vec<Draw> {
+        let surfaces = self.surfaces.iter().filter(|s| !s.object.receives);
+        let draw = |s: &SurfaceDraw<'_>| {
+            s.draw(RenderPipeline {
+                label: label.to_owned(),
+                vertex: Points(self.view.clip_from_world).stage(),
+                fragment: Some(Constant(colour).stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![ColorTargetState::OPAQUE],
+            })
+        };
+        surfaces.map(draw).collect()
+    }
+
     fn lit_shader(
         &self,
         material: &Material,

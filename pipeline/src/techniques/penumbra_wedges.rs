@@ -120,6 +120,10 @@ impl Technique for PenumbraWedges {
             );
             builder.fill(light, &mut pass, &mut warnings, &mut uses);
             list.push(pass);
+            let label = passes::label("not receiving", light, &lights);
+            list.extend(penumbra::not_receiving_pass(
+                label, buffer, &targets, &draws,
+            ));
             let visibility = penumbra::visibility(buffer);
             first = Some(visibility);
             let label = passes::label("lit", light, &lights);

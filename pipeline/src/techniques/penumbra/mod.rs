@@ -13,6 +13,7 @@ use gnomon_raster::{Format, LoadOp, RenderPass, TextureDescriptor, TextureId};
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
+use super::passes::{SceneDraws, Targets};
 use super::visibility::{VisibilityTexture, attachment};
 use crate::technique::{ParamInfo, Params, TechniqueError, TextureSource};
 
@@ -67,6 +68,21 @@ pub(super) fn intensity_pass(
         depth_stencil: None,
         draws: Vec::new(),
     }
+}
+
+/// The pass that gives full light to what takes no shadow, if there is anything.
+pub(super) fn not_receiving_pass(
+    label: String,
+    buffer: TextureId,
+    targets: &Targets,
+    draws: &SceneDraws<'_>,
+) -> Option<RenderPass> {
+    let list = draws.not_receiving(&label, [FULL, 0.0, 0.0, 0.0]);
+    (!list.is_empty()).then(|| RenderPass {
+        depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+        draws: list,
+        ..intensity_pass(label, buffer, LoadOp::Load)
+    })
 }
 
 /// Every pixel at `intensity`.

@@ -182,6 +182,10 @@ pub(crate) fn build(
         let named = |what: &str| passes::label(what, light, &lights);
         built.offset = list.len();
         list.extend(builder.light_passes(light, buffer, &named, &mut built));
+        let label = named("not receiving");
+        list.extend(penumbra::not_receiving_pass(
+            label, buffer, &targets, &draws,
+        ));
         let visibility = penumbra::visibility(buffer);
         first = Some(visibility);
         list.push(draws.lit_pass(

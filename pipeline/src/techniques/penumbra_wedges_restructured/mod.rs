@@ -34,6 +34,17 @@
 //! zmin and zmax differ: here each fragment reads them (textures 1 and 2),
 //! hardware once per triangle and tile; [`crate::tile_traffic`] counts these.
 //! Culling changes no bit of any buffer.
+//!
+//! Pixels without surface (depth 1) belong to no umbra and no wedge and are left
+//! out of zmin and zmax: one pixel of sky would stretch its tile to infinity.
+//!
+//! # Where it is wrong
+//!
+//! Where the side planes of a wedge meet in its front plane, near sharp turns of
+//! a silhouette under a large light, front planes pass through one another and
+//! wedges share space: bright and dark wedges of the picture's own, counted in
+//! `overlapping-side-planes`. That is the algorithm (paper II, §1), not rounding:
+//! the buffer holds the sum that the paper defines.
 
 mod draws;
 mod list;

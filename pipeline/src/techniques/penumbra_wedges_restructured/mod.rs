@@ -42,7 +42,7 @@
 //!
 //! Where the side planes of a wedge meet in its front plane, near sharp turns of
 //! a silhouette under a large light, front planes pass through one another and
-//! wedges share space: bright and dark wedges of the picture's own, counted in
+//! wedges share space: bright and dark triangles, counted in
 //! `overlapping-side-planes`. That is the algorithm (paper II, §1), not rounding:
 //! the buffer holds the sum that the paper defines.
 

@@ -63,6 +63,7 @@ pub mod silhouette;
 pub mod silhouette_loops;
 pub mod technique;
 mod techniques;
+pub mod tile_traffic;
 pub mod volume;
 pub mod wedge;
 pub mod winding;

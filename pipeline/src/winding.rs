@@ -7,7 +7,7 @@
 //! Source: van Oosterom and Strackee, "The Solid Angle of a Plane Triangle",
 //! IEEE Trans. Biomed. Eng. 1983.
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 use crate::mesh::Mesh;
 use crate::volume::ShadowVolume;
@@ -37,6 +37,13 @@ pub fn volume_solid_angle(volume: &ShadowVolume, p: DVec3) -> f64 {
         .iter()
         .map(|t| solid_angle(t.map(seen_from_p)));
     angles.sum::<f64>() / FULL_SPHERE
+}
+
+/// How often a closed surface of homogeneous triangles winds round `p`.
+pub(crate) fn of_triangles(triangles: impl Iterator<Item = [DVec4; 3]>, p: DVec3) -> i32 {
+    let seen_from_p = |v: DVec4| v.truncate() - p * v.w;
+    let angles = triangles.map(|t| solid_angle(t.map(seen_from_p)));
+    nearest_count(angles.sum::<f64>() / FULL_SPHERE)
 }
 
 const FULL_SPHERE: f64 = 4.0 * std::f64::consts::PI;

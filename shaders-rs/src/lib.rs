@@ -3,6 +3,7 @@
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`penumbra`]: penumbra wedges of papers I and II
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
@@ -12,6 +13,7 @@
 
 pub mod coverage;
 pub mod coverage_table;
+pub mod penumbra;
 pub mod soft_volumes;
 pub mod split_volumes;
 pub mod surface;
@@ -42,3 +44,7 @@ stages!(FragmentStage:
     split_volumes::SplitPenumbra, split_volumes::CombineGroups, split_volumes::AddVisibility,
     soft_volumes::Penumbra<soft_volumes::ExactCoverage>,
     soft_volumes::Penumbra<coverage_table::CoverageTable>);
+stages!(FragmentStage:
+    penumbra::crossing::WedgeCrossing, penumbra::inside::WedgeInside,
+    penumbra::buffers::TileDepths, penumbra::buffers::Boundary,
+    penumbra::buffers::StencilCounts);

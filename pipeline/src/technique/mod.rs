@@ -18,7 +18,10 @@ pub use params::{ParamInfo, Params};
 
 use crate::caster::RefusedCaster;
 use crate::scene::Scene;
-use crate::techniques::{ShadowVolumes, SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed};
+use crate::techniques::{
+    PenumbraWedges, PenumbraWedgesRestructured, ShadowVolumes, SoftShadowVolumes,
+    SoftShadowVolumesOptimised, Unshadowed,
+};
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
 pub trait TextureSource {
@@ -84,6 +87,8 @@ pub fn techniques() -> &'static [&'static dyn Technique] {
     static LIST: &[&dyn Technique] = &[
         &Unshadowed,
         &ShadowVolumes,
+        &PenumbraWedges,
+        &PenumbraWedgesRestructured,
         &SoftShadowVolumes,
         &SoftShadowVolumesOptimised,
     ];

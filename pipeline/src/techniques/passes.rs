@@ -146,6 +146,11 @@ impl Targets {
         vec![attachment(self.color, load)]
     }
 
+    /// Depth and stencil, to be read while they are not attached.
+    pub(super) fn depth_texture(&self) -> TextureId {
+        self.depth_stencil
+    }
+
     /// Depth and stencil as they are, but for the given loads.
     pub(super) fn depth_stencil(
         &self,
@@ -295,6 +300,23 @@ impl<'a> SceneDraws<'a> {
             depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
             draws: self.surfaces.iter().map(draw).collect(),
         }
+    }
+
+    /// Draws of the objects that take no shadow, where they are seen, in one
+    /// colour; for a pass with one colour attachment and the depth of the frame.
+    pub(super) fn not_receiving(&self, label: &str, colour: [f32; 4]) -> Vec<Draw> {
+        let surfaces = self.surfaces.iter().filter(|s| !s.object.receives);
+        let draw = |s: &SurfaceDraw<'_>| {
+            s.draw(RenderPipeline {
+                label: label.to_owned(),
+                vertex: Points(self.view.clip_from_world).stage(),
+                fragment: Some(Constant(colour).stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![ColorTargetState::OPAQUE],
+            })
+        };
+        surfaces.map(draw).collect()
     }
 
     fn lit_shader(

@@ -1,0 +1,261 @@
+//! The draws of one light.
+
+use std::sync::Arc;
+
+use gnomon_raster::state::{
+    ColorTargetState, CullMode, DepthStencilState, PrimitiveState, StencilFaceState,
+    StencilOperation, StencilState,
+};
+use gnomon_raster::{RenderPipeline, TextureBinding, VertexBuffer};
+use gnomon_shaders::penumbra::inside::{Part, WedgeInside};
+use gnomon_shaders::penumbra::intensity::IntensityRates;
+use gnomon_shaders::penumbra::plane::ScreenPlane;
+use gnomon_shaders::transform::HomogeneousPoints;
+
+use super::list::{LightDraws, Shaded};
+use super::{Builder, Parts};
+use crate::technique::CasterUse;
+use crate::techniques::passes;
+use crate::techniques::penumbra::casters::Examined;
+use crate::techniques::penumbra::hard::{self, Method};
+use crate::techniques::penumbra::light::LightSphere;
+use crate::techniques::penumbra::report::Met;
+use crate::techniques::penumbra::shape::{self, Faces, WedgeShape};
+use crate::techniques::penumbra::volume::SoftVolume;
+use crate::techniques::penumbra::{EXTRA_WEDGES, axes, screen};
+use crate::techniques::visibility::binding;
+use crate::wedge::paper1::{LinkedSettings, LinkedWedge};
+
+impl Builder<'_> {
+    pub(super) fn hard_light(&self, light: usize, draws: &mut LightDraws, parts: &mut Parts) {
+        draws.hard = true;
+        for caster in self.casters {
+            let view = &self.draws.view;
+            let forced = self.choices.forced;
+            let (draw, used) = hard::draw(self.scene, view, self.size, light, caster, forced);
+            draws.tested.push(draw);
+            parts.uses.push(used);
+        }
+    }
+
+    pub(super) fn soft_light(
+        &self,
+        light: usize,
+        sphere: &LightSphere,
+        draws: &mut LightDraws,
+        parts: &mut Parts,
+    ) {
+        let mut met = Met::default();
+        let settings = LinkedSettings {
+            extra_wedges: self.params.get(EXTRA_WEDGES.name) != "off",
+            ..LinkedSettings::default()
+        };
+        for caster in self.casters {
+            let volume = caster.soft_volume(sphere, &settings, &mut met);
+            let method = self
+                .choices
+                .forced
+                .unwrap_or_else(|| self.choose(caster, &volume));
+            if method == Method::DepthFail {
+                self.caps(caster, &volume, draws);
+            }
+            for wedge in &volume.wedges {
+                self.wedge(&caster.object.name, wedge, method, draws);
+            }
+            for gap in &volume.gaps {
+                let faces = shape::triangles(&self.draws.view, &gap.triangles);
+                let planes = [self.screen.plane(&self.draws.view, &gap.plane); 4];
+                let shader = self.shader(planes, None, Part::Umbra, method);
+                self.umbra("gap", &faces, shader, draws);
+            }
+            let bottom = volume.bottom.len();
+            let sides = 2 * volume.wedges.len() + volume.gaps.len();
+            parts.uses.push(CasterUse {
+                object: caster.number,
+                light,
+                method: method.reported(),
+                triangles: [volume.cap.len() + volume.patches.len(), bottom, sides],
+            });
+        }
+        parts.warnings.extend(met.warnings(light));
+        if self.choices.three {
+            parts.warnings.extend(met.stencil_warning(light));
+        }
+    }
+
+    /// z-fail where the eye is in or next to a wedge, or in the umbra.
+    fn choose(&self, caster: &Examined<'_>, volume: &SoftVolume) -> Method {
+        let camera = &self.scene.camera;
+        // Next to: where a wedge's nearest face may be seen edge-on.
+        let margin = camera.near + 1e-4 * (camera.target - camera.eye).length();
+        let in_shadow = volume.may_hold(camera.eye, margin)
+            || volume.winding(&caster.object.mesh, camera.eye) != 0;
+        if in_shadow {
+            Method::DepthFail
+        } else {
+            Method::DepthPass
+        }
+    }
+
+    /// Top, patches and bottom of a volume, for z-fail.
+    fn caps(&self, caster: &Examined<'_>, volume: &SoftVolume, draws: &mut LightDraws) {
+        let view = &self.draws.view;
+        let mesh = &caster.object.mesh;
+        // The caster's own vertices, as the scene draws them: equal depth.
+        let points = mesh.positions().iter().map(|p| view.point(*p));
+        let top = Faces {
+            vertices: Arc::new(VertexBuffer {
+                data: points.flat_map(|[x, y, z]| [x, y, z, 1.0]).collect(),
+                stride: 4,
+            }),
+            indices: passes::index_buffer(&volume.cap),
+        };
+        let patches = shape::triangles(view, &volume.patches);
+        let bottom = shape::triangles(view, &volume.bottom);
+        for (label, faces) in [("top", top), ("patches", patches), ("bottom", bottom)] {
+            if faces.indices.indices().is_empty() {
+                continue;
+            }
+            let mut pipeline = hard::boundary_pipeline(label, view, Method::DepthFail);
+            if self.choices.three {
+                pipeline.fragment = None;
+                pipeline.color_targets.clear();
+                pipeline.depth_stencil.stencil = counted(Method::DepthFail);
+            }
+            draws.tested.push(faces.draw(label, pipeline, Vec::new()));
+        }
+    }
+
+    fn wedge(&self, label: &str, wedge: &LinkedWedge, method: Method, draws: &mut LightDraws) {
+        let view = &self.draws.view;
+        let shape = WedgeShape::new(view, wedge);
+        let planes = self.screen.wedge(view, wedge);
+        let shader = |part| self.shader(planes, Some(wedge), part, method);
+        // Faces through which the penumbra is drawn, and the other facing.
+        let (drawn, other) = match method {
+            Method::DepthPass => (CullMode::Back, CullMode::Front),
+            Method::DepthFail => (CullMode::Front, CullMode::Back),
+        };
+        match &shape.others {
+            Some(others) if !self.choices.three => {
+                let all = [
+                    (&shape.front, drawn, Part::Both),
+                    (&shape.front, other, Part::Umbra),
+                    (others, drawn, Part::Penumbra),
+                ];
+                let shaded = all.map(|(f, cull, part)| self.shaded(label, f, cull, shader(part)));
+                draws.intensity.extend(shaded);
+            }
+            _ => {
+                self.umbra(label, &shape.front, shader(Part::Umbra), draws);
+                let penumbra = self.shaded(label, &shape.all, drawn, shader(Part::Penumbra));
+                draws.intensity.push(penumbra);
+            }
+        }
+    }
+
+    /// A boundary of the umbra by itself.
+    fn umbra(&self, label: &str, faces: &Faces, shader: WedgeInside, draws: &mut LightDraws) {
+        if !self.choices.three {
+            let draw = self.shaded(label, faces, CullMode::None, shader);
+            draws.intensity.push(draw);
+            return;
+        }
+        let method = if shader.depth_fail {
+            Method::DepthFail
+        } else {
+            Method::DepthPass
+        };
+        for (pass, cull) in draws
+            .umbra
+            .iter_mut()
+            .zip([CullMode::Back, CullMode::Front])
+        {
+            let mut pipeline = self.pipeline(cull, &shader);
+            pipeline.color_targets.clear();
+            pipeline.depth_stencil.stencil = counted(method);
+            let draw = faces.draw(label, pipeline, self.bindings());
+            pass.push((draw, Some(shader.clone())));
+        }
+    }
+
+    fn shader(
+        &self,
+        planes: [ScreenPlane; 4],
+        wedge: Option<&LinkedWedge>,
+        part: Part,
+        method: Method,
+    ) -> WedgeInside {
+        let view = &self.draws.view;
+        let interpolation = self.choices.interpolation;
+        let mut tiles = self.choices.tiles.clone();
+        if let (Some(wedge), true) = (wedge, self.choices.all_axes && part != Part::Umbra) {
+            tiles.axes = axes::further(&self.screen, view, wedge, self.size);
+        }
+        let none = IntensityRates {
+            back_over_front: [1.0; 2],
+            first_over_second: 1.0,
+            interpolation,
+        };
+        WedgeInside {
+            planes,
+            rates: wedge.map_or(none, |w| screen::rates(w, interpolation)),
+            part,
+            depth_fail: method == Method::DepthFail,
+            tiles,
+        }
+    }
+
+    fn shaded(&self, label: &str, faces: &Faces, cull: CullMode, shader: WedgeInside) -> Shaded {
+        let pipeline = self.pipeline(cull, &shader);
+        let draw = faces.draw(label, pipeline, self.bindings());
+        (draw, Some(shader))
+    }
+
+    fn pipeline(&self, cull_mode: CullMode, shader: &WedgeInside) -> RenderPipeline {
+        let label = match shader.part {
+            Part::Umbra => "umbra",
+            Part::Penumbra => "penumbra",
+            Part::Both => "umbra and penumbra",
+        };
+        RenderPipeline {
+            label: label.to_owned(),
+            vertex: HomogeneousPoints(self.draws.view.clip_from_world).stage(),
+            fragment: Some(shader.clone().stage()),
+            primitive: PrimitiveState {
+                cull_mode,
+                ..passes::clamped()
+            },
+            depth_stencil: DepthStencilState::default(),
+            color_targets: vec![ColorTargetState::ADDITIVE],
+        }
+    }
+
+    fn bindings(&self) -> Vec<TextureBinding> {
+        self.inputs.iter().map(|&t| binding(t)).collect()
+    }
+}
+
+/// Front faces of the umbra's boundary take one from a stencil, or add one where
+/// they are counted beyond the surface; back faces the other way round.
+fn counted(method: Method) -> StencilState {
+    let face = |pass_op| StencilFaceState {
+        pass_op,
+        ..StencilFaceState::IGNORE
+    };
+    let [more, less] = [
+        StencilOperation::IncrementWrap,
+        StencilOperation::DecrementWrap,
+    ]
+    .map(face);
+    match method {
+        Method::DepthPass => StencilState {
+            front: less,
+            back: more,
+        },
+        Method::DepthFail => StencilState {
+            front: more,
+            back: less,
+        },
+    }
+}

@@ -1,0 +1,457 @@
+//! Penumbra wedges of papers I and II on the emulated GPU: hard shadows in the
+//! limit, the same buffers whatever is culled and in however many passes, and what
+//! culling saves.
+
+use glam::DVec3;
+use gnomon_pipeline::light::{HardLight, Light, LightShape};
+use gnomon_pipeline::mesh::Shading;
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{Camera, Material, Object, Scene, builtin};
+use gnomon_pipeline::shape;
+use gnomon_pipeline::technique::{self, Params, VisibilityOutput};
+use gnomon_pipeline::tile_traffic::{Measured, TileTraffic, measure};
+use gnomon_raster::{Gpu, GpuConfig, SimdLevel, Subresource};
+
+const SIZE: [u32; 2] = [160, 120];
+const ORIGINAL: &str = "penumbra-wedges";
+const RESTRUCTURED: &str = "penumbra-wedges-restructured";
+
+fn scene(name: &str) -> Scene {
+    builtin::build(name).unwrap()
+}
+
+/// The scene with its first light as a sphere of the given radius, at its centre.
+fn with_sphere(mut scene: Scene, radius: f64) -> Scene {
+    let HardLight::Point(centre) = scene.lights[0].hard() else {
+        panic!("{}: parallel light", scene.name);
+    };
+    scene.lights[0].shape = LightShape::Sphere { centre, radius };
+    scene
+}
+
+fn params(technique: &str, set: &[&str]) -> Params {
+    Params::parse(technique::find(technique).unwrap(), set).unwrap()
+}
+
+fn picture(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
+    let settings = RenderSettings {
+        size: SIZE,
+        ..RenderSettings::default()
+    };
+    let found = technique::find(technique).unwrap();
+    render(scene, found, &params(technique, set), &settings).unwrap()
+}
+
+/// The light-intensity buffer of the first light, as stored.
+fn buffer_with(scene: &Scene, technique: &str, set: &[&str], config: GpuConfig) -> Vec<i16> {
+    let mut gpu = Gpu::new(config).unwrap();
+    let found = technique::find(technique).unwrap();
+    let params = params(technique, set);
+    let frame = found.frame(scene, SIZE, &params, &mut gpu).unwrap();
+    gpu.submit(&frame.list).unwrap();
+    let VisibilityOutput::Red { texture, .. } = frame.outputs.visibility else {
+        panic!("{:?}", frame.outputs.visibility);
+    };
+    let texels = gpu.texture(texture).unwrap();
+    let texels = texels.read_color(Subresource::default()).unwrap();
+    texels.iter().map(|t| t.0[0] as i16).collect()
+}
+
+fn buffer(scene: &Scene, technique: &str, set: &[&str]) -> Vec<i16> {
+    buffer_with(scene, technique, set, GpuConfig::default())
+}
+
+fn bits(visibility: &[f32]) -> Vec<u32> {
+    visibility.iter().map(|v| v.to_bits()).collect()
+}
+
+fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
+#[test]
+fn radius_zero_is_the_hard_mask_byte_for_byte() {
+    for name in [
+        "cylinder",
+        "columns",
+        "creature",
+        "demo",
+        "adversarial-eye-in-shadow",
+        "adversarial-near-plane",
+    ] {
+        let scene = with_sphere(scene(name), 0.0);
+        let hard = picture(&scene, "shadow-volumes", &[]);
+        for technique in [ORIGINAL, RESTRUCTURED] {
+            let soft = picture(&scene, technique, &[]);
+            assert!(
+                bits(&soft.visibility) == bits(&hard.visibility),
+                "{name}, {technique}"
+            );
+            assert!(soft.srgb == hard.srgb, "{name}, {technique}");
+        }
+        let wide = with_sphere(scene, 0.3);
+        let soft = picture(&wide, RESTRUCTURED, &[]);
+        let other = differing(&bits(&soft.visibility), &bits(&hard.visibility));
+        assert!(other > 50, "negative control: {name}, {other}");
+    }
+}
+
+#[test]
+fn what_takes_no_shadow_is_fully_lit() {
+    let mut point = with_sphere(scene("cylinder"), 0.0);
+    point.objects[0].receives = false;
+    let hard = picture(&point, "shadow-volumes", &[]);
+    let wide = with_sphere(point.clone(), 0.5);
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let soft = picture(&point, technique, &[]);
+        assert!(
+            bits(&soft.visibility) == bits(&hard.visibility),
+            "{technique}"
+        );
+        let dark = |scene: &Scene| {
+            let drawn = picture(scene, technique, &[]).visibility;
+            drawn.iter().filter(|v| **v < 1.0).count()
+        };
+        let mut receiving = wide.clone();
+        receiving.objects[0].receives = true;
+        let [own, all] = [&wide, &receiving].map(dark);
+        assert!(own > 50 && all > own + 200, "{technique}: {own} of {all}");
+    }
+}
+
+/// Whatever the scene: visibility is a number in 0..=1 at every surface, none is
+/// NaN on the way, and sums that saturate are counted.
+#[test]
+fn every_scene_gives_visibility_within_bounds() {
+    for entry in builtin::SCENES.iter() {
+        let scene = scene(entry.name);
+        for technique in [ORIGINAL, RESTRUCTURED] {
+            let drawn = picture(&scene, technique, &[]);
+            for (v, depth) in drawn.visibility.iter().zip(&drawn.depth) {
+                let fine = if *depth >= 1.0 {
+                    v.is_nan()
+                } else {
+                    (0.0..=1.0).contains(v)
+                };
+                assert!(fine, "{}, {technique}: {v} at depth {depth}", entry.name);
+            }
+            let codes: Vec<&str> = drawn.warnings.iter().map(|w| w.code).collect();
+            assert!(!codes.contains(&"nan"), "{}: {codes:?}", entry.name);
+            // 300 nested umbrae are more than the buffer holds.
+            let nested = entry.name.contains("nested") || entry.name == "adversarial";
+            let full = codes.contains(&"blend-saturated");
+            assert!(nested || !full, "{}: {codes:?}", entry.name);
+            assert!(full || !entry.name.contains("nested"), "{codes:?}");
+        }
+    }
+}
+
+/// Every wedge vanishes with the light, and so does every difference.
+#[test]
+fn small_lights_approach_the_hard_mask() {
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let hard = picture(&with_sphere(scene("creature"), 0.0), technique, &[]);
+        let count = |radius| {
+            let soft = picture(&with_sphere(scene("creature"), radius), technique, &[]);
+            differing(&bits(&soft.visibility), &bits(&hard.visibility))
+        };
+        let counts = [1e-1, 1e-2, 1e-3, 1e-4].map(count);
+        eprintln!("{technique}: pixels that differ from the hard mask {counts:?}");
+        assert!(
+            counts[0] > 4 * counts[1] && counts[1] > counts[2],
+            "{counts:?}"
+        );
+        // Wedges thinner than f32 resolves may be missed here and there.
+        assert!(counts[0] > 100 && counts[3] * 1000 <= SIZE[0] as usize * SIZE[1] as usize);
+    }
+}
+
+/// Under a long straight edge, seen from pixels of the floor: the largest error
+/// against the part of the light's disc beyond the edge.
+fn error_under_a_straight_edge(technique: &str, interpolation: &str) -> f64 {
+    let (radius, centre) = (0.05, DVec3::new(1.0, 6.0, 0.0));
+    let roof = shape::cuboid(DVec3::new(-10.0, 2.0, 0.0), DVec3::new(20.0, 0.02, 40.0));
+    let floor = shape::plane(6.0, 0.0).into_mesh(Shading::Flat).unwrap();
+    let light = Light {
+        shape: LightShape::Sphere { centre, radius },
+        colour: [1.0; 3],
+    };
+    let objects = vec![
+        Object::new("floor", floor, Material::matt([1.0; 3])).receiver_only(),
+        Object::new(
+            "roof",
+            roof.into_mesh(Shading::Flat).unwrap(),
+            Material::matt([1.0; 3]),
+        ),
+    ];
+    let camera = Camera {
+        fov_y_degrees: 4.0,
+        ..Camera::look_at([0.9, 1.2, 2.0], [-0.496, 0.0, 0.0])
+    };
+    let scene = Scene::new(camera, vec![light], objects);
+    let drawn = picture(
+        &scene,
+        technique,
+        &[&format!("interpolation={interpolation}")],
+    );
+    let rays = camera.eye_rays(SIZE[0], SIZE[1]);
+    let edge = DVec3::new(0.0, 1.99, 0.0);
+    let (mut largest, mut partly) = (0.0f64, 0);
+    for (i, &visible) in drawn.visibility.iter().enumerate() {
+        let (x, y) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+        let d = rays.direction(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let p = camera.eye + d * (-camera.eye.y / d.y);
+        if visible.is_nan() || d.y >= 0.0 || p.x.abs() > 3.0 || p.z.abs() > 3.0 {
+            continue;
+        }
+        // Distance of the light's centre beyond the plane of pixel and edge, in radii.
+        let normal = (edge - p).cross(DVec3::Z).normalize();
+        let h = ((centre - p).dot(normal) * normal.x.signum() / radius).clamp(-1.0, 1.0);
+        let hidden = (libm::acos(h) - h * (1.0 - h * h).sqrt()) / std::f64::consts::PI;
+        largest = largest.max((f64::from(visible) - (1.0 - hidden)).abs());
+        partly += usize::from(h.abs() < 1.0);
+    }
+    assert!(partly > 300, "{partly} pixels in the penumbra");
+    largest
+}
+
+#[test]
+fn interpolation_errors_are_those_of_a_discs_segment() {
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let [linear, smooth] =
+            ["linear", "smoothstep"].map(|i| error_under_a_straight_edge(technique, i));
+        eprintln!("{technique}: linear {linear:.4}, smoothstep {smooth:.4}");
+        // 0.0577 and 0.0394, the buffer's half step, and the light's nearness.
+        assert!((linear - 0.0577).abs() < 0.003, "{technique}: {linear}");
+        assert!((smooth - 0.0394).abs() < 0.003, "{technique}: {smooth}");
+    }
+}
+
+/// Scenes where the restructured technique is compared with itself.
+fn hard_cases() -> Vec<Scene> {
+    let mut cases: Vec<Scene> = ["columns", "creature", "adversarial-eye-in-shadow"]
+        .into_iter()
+        .map(scene)
+        .collect();
+    let mut sky = scene("spheres");
+    sky.camera = Camera::look_at([4.0, 1.0, 7.0], [0.0, 2.2, 0.0]);
+    cases.push(sky);
+    cases
+}
+
+#[test]
+fn the_buffer_does_not_depend_on_culling_passes_tiles_or_axes() {
+    for scene in hard_cases() {
+        for method in ["auto", "zfail"] {
+            let method = format!("method={method}");
+            let reference = buffer(&scene, RESTRUCTURED, &[&method, "culling=none"]);
+            let dark = reference.iter().filter(|v| (1..255).contains(*v)).count();
+            assert!(dark > 100, "{}: {dark} in penumbrae", scene.name);
+            let mut ways = vec![vec!["culling=none", "passes=three"]];
+            for tile in [
+                "tile=2", "tile=4", "tile=8", "tile=16", "tile=32", "tile=64", "tile=128",
+                "tile=256",
+            ] {
+                ways.push(vec!["culling=zminmax", tile]);
+            }
+            ways.push(vec!["culling=zmax", "tile=8", "passes=three"]);
+            ways.push(vec!["culling=zminmax", "tile=4", "separating-axis=full"]);
+            ways.push(vec![
+                "culling=zminmax",
+                "tile=16",
+                "separating-axis=full",
+                "passes=three",
+            ]);
+            for mut way in ways {
+                way.push(&method);
+                let other = buffer(&scene, RESTRUCTURED, &way);
+                assert!(
+                    other == reference,
+                    "{}: {way:?}: {} pixels differ",
+                    scene.name,
+                    differing(&other, &reference)
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn z_pass_equals_z_fail_where_the_eye_is_outside_and_not_where_it_is_inside() {
+    for name in ["cylinder", "columns", "creature"] {
+        let scene = scene(name);
+        let [zpass, zfail] = ["method=zpass", "method=zfail"]
+            .map(|m| picture(&scene, RESTRUCTURED, &[m]).visibility);
+        let other = differing(&bits(&zpass), &bits(&zfail));
+        eprintln!("{name}: z-pass and z-fail differ in {other} pixels");
+        assert!(other <= 4, "{name}: {other}");
+    }
+    let inside = scene("adversarial-eye-in-shadow");
+    let [zpass, zfail] =
+        ["method=zpass", "method=zfail"].map(|m| picture(&inside, RESTRUCTURED, &[m]).visibility);
+    let other = differing(&bits(&zpass), &bits(&zfail));
+    assert!(other > 500, "negative control: {other}");
+}
+
+/// The two papers' algorithms add up to the same buffer; where the eye is in
+/// shadow too, if the first starts with the eye's own intensity.
+#[test]
+fn restructuring_changes_no_intensity() {
+    for (name, radius) in [
+        ("cylinder", 0.5),
+        ("columns", 0.1),
+        ("spheres", 0.15),
+        ("adversarial-eye-in-shadow", 0.3),
+    ] {
+        // Not so large that side planes meet before the floor, beyond which what a
+        // ray gains has no counterpart.
+        let scene = with_sphere(scene(name), radius);
+        let first = picture(&scene, ORIGINAL, &[]).visibility;
+        let second = picture(&scene, RESTRUCTURED, &[]).visibility;
+        let apart = |a: &[f32], b: &[f32]| {
+            let off = |(a, b): (&f32, &f32)| (a - b).abs() > 1.5 / 255.0;
+            a.iter().zip(b).filter(|p| off(*p)).count()
+        };
+        let count = apart(&first, &second);
+        eprintln!("{name}: {count} pixels apart by more than a step");
+        assert!(count <= first.len() / 1000, "{name}: {count}");
+        if name == "adversarial-eye-in-shadow" {
+            let lit = picture(&scene, ORIGINAL, &["start=lit"]).visibility;
+            let count = apart(&lit, &second);
+            assert!(count > 500, "negative control: {count}");
+        }
+    }
+}
+
+/// The eye moves along a line through a penumbra into the umbra: no jump.
+#[test]
+fn an_eye_may_be_anywhere() {
+    for step in 0..8 {
+        let mut scene = with_sphere(scene("cylinder"), 0.5);
+        let x = -0.2 - 0.35 * f64::from(step);
+        scene.camera = Camera::look_at([x, 0.3, -0.9], [x - 1.0, 0.0, -2.0]);
+        let first = picture(&scene, ORIGINAL, &[]).visibility;
+        let second = picture(&scene, RESTRUCTURED, &[]).visibility;
+        let off = |(a, b): (&f32, &f32)| (a - b).abs() > 2.5 / 255.0;
+        let count = first.iter().zip(&second).filter(|p| off(*p)).count();
+        assert!(count <= first.len() / 500, "eye at x = {x}: {count}");
+    }
+}
+
+fn measured(scene: &Scene, set: &[&str]) -> Measured {
+    let params = params(RESTRUCTURED, set);
+    measure(scene, SIZE, &params, GpuConfig::default()).unwrap()
+}
+
+#[test]
+fn culling_saves_reads_and_no_writes_and_the_model_counts_what_the_gpu_reads() {
+    for scene in hard_cases() {
+        let name = &scene.name;
+        for passes in ["passes=single", "passes=three"] {
+            let run = |culling: &str, axes: &str| {
+                let m = measured(&scene, &[passes, culling, axes, "tile=8"]);
+                assert_eq!(
+                    m.traffic.depth_reads, m.gpu.traffic.tex[0].read_accesses,
+                    "{name}, {passes}, {culling}"
+                );
+                assert_eq!(m.traffic.fragments, m.gpu.fragments.generated, "{name}");
+                assert_eq!(m.gpu.events.blend_saturated, [0; 4], "{name}");
+                m.traffic
+            };
+            let faces = "separating-axis=faces";
+            let none = run("culling=none", faces);
+            let zmax = run("culling=zmax", faces);
+            let both = run("culling=zminmax", faces);
+            let full = run("culling=zminmax", "separating-axis=full");
+            eprintln!("{name}, {passes}:\n  {none:?}\n  {zmax:?}\n  {both:?}\n  {full:?}");
+            let reads = [none, zmax, both, full].map(|t| t.depth_reads);
+            assert!(reads.is_sorted_by(|a, b| a >= b), "{name}: {reads:?}");
+            assert!(reads[2] * 10 < reads[0] * 9, "{name}: {reads:?}");
+            for other in [zmax, both, full] {
+                assert_eq!(other.intensity_writes, none.intensity_writes, "{name}");
+                assert_eq!(other.stencil_writes, none.stencil_writes, "{name}");
+                assert_eq!(other.fragments, none.fragments, "{name}");
+            }
+            assert_eq!(none.tested, 0);
+            assert_eq!(zmax.tested, both.tested);
+            assert!(zmax.culled < both.culled && both.culled <= full.culled);
+        }
+    }
+}
+
+#[test]
+fn a_single_pass_reads_and_writes_less_than_three() {
+    for name in ["columns", "creature", "cylinder"] {
+        let scene = scene(name);
+        let [one, three] =
+            ["passes=single", "passes=three"].map(|p| measured(&scene, &[p, "tile=8"]).traffic);
+        let writes = |t: &TileTraffic| t.intensity_writes + t.stencil_writes;
+        eprintln!(
+            "{name}: depth reads {} of {}, writes {} of {}",
+            one.depth_reads,
+            three.depth_reads,
+            writes(&one),
+            writes(&three)
+        );
+        assert!(one.depth_reads < three.depth_reads, "{name}");
+        assert!(writes(&one) < writes(&three), "{name}");
+    }
+}
+
+#[test]
+fn execution_changes_no_bit() {
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let scene = scene("creature");
+        let reference = buffer(&scene, technique, &[]);
+        for (threads, tile, simd) in [
+            (1, 16, SimdLevel::scalar()),
+            (3, 128, SimdLevel::detect()),
+            (2, 32, SimdLevel::scalar()),
+        ] {
+            let config = GpuConfig {
+                threads,
+                tile,
+                simd,
+                skip: false,
+            };
+            let other = buffer_with(&scene, technique, &[], config);
+            assert!(other == reference, "{technique}: {threads} {tile} {simd}");
+        }
+    }
+}
+
+/// Every kind of light, several at once, and one buffer each.
+#[test]
+fn several_lights_of_all_kinds() {
+    let mut scene = scene("cylinder");
+    let position = DVec3::new(-2.0, 4.0, 1.0);
+    let light = |shape| Light {
+        shape,
+        colour: [0.4; 3],
+    };
+    scene.lights.push(light(LightShape::Sphere {
+        centre: position,
+        radius: 0.4,
+    }));
+    scene.lights.push(light(LightShape::Point { position }));
+    scene.lights.push(light(LightShape::Disc {
+        centre: position,
+        normal: DVec3::Y,
+        radius: 0.5,
+    }));
+    scene.lights.push(light(LightShape::Directional {
+        towards: DVec3::new(0.5, 2.0, 0.3),
+    }));
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let all = picture(&scene, technique, &[]);
+        let alone = picture(&scene, technique, &["light=0"]);
+        assert_eq!(bits(&all.visibility), bits(&alone.visibility));
+        let labels: Vec<&str> = all.report.passes.iter().map(|p| p.label.as_str()).collect();
+        assert!(labels.contains(&"lit 4") && labels.contains(&"lit 0"));
+        let spheres = all.warnings.iter().filter(|w| w.code == "light-as-sphere");
+        assert_eq!(spheres.count(), 2, "{:?}", all.warnings);
+        let hard = picture(&scene, "shadow-volumes", &["light=4"]);
+        let parallel = picture(&scene, technique, &["light=4"]);
+        assert_eq!(bits(&parallel.visibility), bits(&hard.visibility));
+    }
+}

@@ -1,0 +1,44 @@
+//! Penumbra wedges of papers I and II: intensities added to a light-intensity
+//! buffer (`R16Sint`), out of planes in screen space and the depth buffer.
+//!
+//! Sources: Akenine-Möller and Assarsson, "Approximate Soft Shadows on Arbitrary
+//! Surfaces using Penumbra Wedges" (paper I), §4 and §5; Assarsson and
+//! Akenine-Möller, "Interactive Rendering of Soft Shadows using an Optimized and
+//! Generalized Penumbra Wedge Algorithm" (paper II), §3 to §6.
+//!
+//! * [`plane`]: plane equations over pixel and depth, and their extremes in a box
+//! * [`intensity`]: the interpolated intensity of a point in a wedge
+//! * [`crossing`]: paper I, what a ray gains between entering and leaving
+//! * [`inside`]: paper II, umbra and penumbra apart, with tiles culled
+//! * [`buffers`]: smallest and largest depth of tiles; stencil counts to intensities
+//!
+//! Full light is 255, one step of an 8-bit channel is 1.
+
+pub mod buffers;
+pub mod crossing;
+pub mod inside;
+pub mod intensity;
+pub mod plane;
+
+use gnomon_raster::shader::Fragment;
+use gnomon_raster::{F32, I32, Lanes, Mask};
+
+use plane::ScreenPoint;
+
+/// The intensity of a fully visible light in the light-intensity buffer.
+pub const FULL: f32 = 255.0;
+
+/// What the pixel of a fragment shows, by the depth in texture `slot`, and where
+/// that is a surface at all.
+#[inline(always)]
+fn seen<L: Lanes>(l: L, f: &mut Fragment<'_, L>, slot: usize) -> (ScreenPoint<L>, Mask<L>) {
+    let at = [f.column(), f.row(), I32::splat(l, 0)];
+    let [depth, ..] = f.fetch_texel(slot, at, 0);
+    let q = F32::splat(l, 1.0) - depth;
+    let point = ScreenPoint {
+        x: f.x(),
+        y: f.y(),
+        q,
+    };
+    (point, q.gt(F32::splat(l, 0.0)))
+}

@@ -3,6 +3,7 @@
 
 use std::time::Instant;
 
+use gnomon_raster::texture::ColorTexel;
 use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource};
 use thiserror::Error;
 
@@ -167,7 +168,7 @@ fn read_back(
     Ok(Rendered {
         size,
         srgb: color.iter().map(|t| encoder.encode(t.0)).collect(),
-        visibility: visibility(frame.outputs.visibility, &depth, &stencil),
+        visibility: visibility(gpu, frame.outputs.visibility, &depth, &stencil)?,
         depth,
         stencil,
         frame_ms: median(times.frames),
@@ -178,13 +179,30 @@ fn read_back(
     })
 }
 
-fn visibility(output: VisibilityOutput, depth: &[f32], stencil: &[u8]) -> Vec<f32> {
-    let at = |(&depth, &stencil): (&f32, &u8)| match output {
-        _ if depth >= 1.0 => f32::NAN,
-        VisibilityOutput::StencilZero if stencil != 0 => 0.0,
-        VisibilityOutput::StencilZero | VisibilityOutput::Full => 1.0,
+fn visibility(
+    gpu: &Gpu,
+    output: VisibilityOutput,
+    depth: &[f32],
+    stencil: &[u8],
+) -> Result<Vec<f32>, RenderError> {
+    let values: Vec<f32> = match output {
+        VisibilityOutput::Full => vec![1.0; depth.len()],
+        VisibilityOutput::StencilZero => {
+            let lit = |s: &u8| if *s == 0 { 1.0 } else { 0.0 };
+            stencil.iter().map(lit).collect()
+        }
+        VisibilityOutput::Red {
+            texture,
+            scale,
+            offset,
+        } => {
+            let texels = gpu.texture(texture)?.read_color(Subresource::default())?;
+            let value = |t: &ColorTexel| (t.0[0] * scale + offset).clamp(0.0, 1.0);
+            texels.iter().map(value).collect()
+        }
     };
-    depth.iter().zip(stencil).map(at).collect()
+    let at = |(&depth, value)| if depth >= 1.0 { f32::NAN } else { value };
+    Ok(depth.iter().zip(values).map(at).collect())
 }
 
 /// Events that changed the picture without stopping it.

@@ -25,5 +25,8 @@ macro_rules! stages {
         }
     )+ };
 }
-stages!(VertexStage: transform::Points, transform::HomogeneousPoints, transform::Surfaces);
-stages!(FragmentStage: surface::Constant, surface::Lambert, surface::Phong);
+stages!(VertexStage:
+    transform::Points, transform::HomogeneousPoints, transform::Surfaces, transform::FullScreen);
+stages!(FragmentStage:
+    surface::Constant, surface::Lambert, surface::Phong, surface::AmbientWithPosition,
+    surface::Shadowed<surface::Lambert>, surface::Shadowed<surface::Phong>);

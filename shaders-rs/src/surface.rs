@@ -3,10 +3,13 @@
 //!
 //! Output is linear light in attachment 0. [`Lambert`] and [`Phong`] read the
 //! varyings of [`crate::transform::Surfaces`]. A surface seen from behind is
-//! shaded with its normal turned round.
+//! shaded with its normal turned round. [`Shadowed`] dims either by a visibility
+//! that an earlier pass left in a texture; [`AmbientWithPosition`] leaves the
+//! positions that such a pass works with.
 
-use gnomon_raster::shader::{Fragment, FragmentShader};
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
+use gnomon_raster::simd::each3;
+use gnomon_raster::{F32, I32, Lanes};
 
 use crate::vector::V3;
 
@@ -21,6 +24,71 @@ impl FragmentShader for Constant {
     }
 }
 
+/// Ambient light in attachment 0, and in attachment 1 the world-space position
+/// (varyings 3..6 of [`crate::transform::Surfaces`]) with w 1 where shadow may
+/// fall and 0 where it may not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientWithPosition {
+    /// The colour.
+    pub ambient: [f32; 4],
+    /// Whether shadow falls on the surface.
+    pub receives: bool,
+}
+
+impl FragmentShader for AmbientWithPosition {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        Constant(self.ambient).shade(l, f);
+        let (_, V3([x, y, z])) = inputs(f);
+        let w = if self.receives { 1.0 } else { 0.0 };
+        f.set_color(1, [x, y, z, F32::splat(l, w)]);
+    }
+}
+
+/// Diffuse and specular light of a surface, linear RGB.
+pub trait Reflection: Send + Sync {
+    /// The light towards the eye, all of the light source being visible.
+    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3];
+}
+
+/// A surface dimmed by the visibility of the light: texture 0 at the fragment's
+/// own pixel, `texel · scale + offset` limited to 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shadowed<S> {
+    /// The surface.
+    pub surface: S,
+    /// Factor of the texel.
+    pub scale: f32,
+    /// Added to the product.
+    pub offset: f32,
+    /// Visibility of each colour by itself; else red's for all.
+    pub coloured: bool,
+}
+
+impl<S: Reflection> FragmentShader for Shadowed<S> {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentOutputs {
+            textures: 1,
+            ..FragmentOutputs::default()
+        }
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let at = [f.column(), f.row(), I32::splat(l, 0)];
+        let texel = f.fetch_texel(0, at, 0);
+        let light = self.surface.light(l, f);
+        let [r, g, b] = each3(
+            #[inline(always)]
+            |i| {
+                let visible = texel[if self.coloured { i } else { 0 }];
+                light[i] * (visible * self.scale + self.offset).clamp(0.0, 1.0)
+            },
+        );
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+    }
+}
+
 /// Diffuse light: `diffuse · max(n·l, 0)`, alpha 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambert {
@@ -30,13 +98,23 @@ pub struct Lambert {
     pub light: [f32; 4],
 }
 
-impl FragmentShader for Lambert {
+impl Reflection for Lambert {
     #[inline(always)]
-    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3] {
         let (normal, position) = inputs(f);
         let to_light = position.towards(self.light);
         let cosine = cosine(normal, to_light, facing(f)).max(F32::splat(l, 0.0));
-        let [r, g, b] = self.diffuse.map(|d| cosine * d);
+        each3(
+            #[inline(always)]
+            |i| cosine * self.diffuse[i],
+        )
+    }
+}
+
+impl FragmentShader for Lambert {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let [r, g, b] = self.light(l, f);
         f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
     }
 }
@@ -56,9 +134,9 @@ pub struct Phong {
     pub eye: [f32; 3],
 }
 
-impl FragmentShader for Phong {
+impl Reflection for Phong {
     #[inline(always)]
-    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3] {
         let (normal, position) = inputs(f);
         let [x, y, z] = self.eye;
         let (to_light, to_eye) = (
@@ -74,8 +152,18 @@ impl FragmentShader for Phong {
         let highlight = n_l
             .gt(zero)
             .select_f32(power(mirrored, self.shininess), zero);
-        let channel = |i: usize| diffuse * self.lambert.diffuse[i] + highlight * self.specular[i];
-        f.set_color(0, [channel(0), channel(1), channel(2), zero]);
+        each3(
+            #[inline(always)]
+            |i| diffuse * self.lambert.diffuse[i] + highlight * self.specular[i],
+        )
+    }
+}
+
+impl FragmentShader for Phong {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let [r, g, b] = self.light(l, f);
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
     }
 }
 

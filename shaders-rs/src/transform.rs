@@ -6,7 +6,7 @@
 //! light cap lies exactly on the surface that cast it.
 
 use gnomon_raster::shader::{Interpolation, Vertex, VertexShader};
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::{F32, LANES, Lanes};
 
 /// Rows of the matrix; row r of the product is
 /// `((m[r][0]·x + m[r][1]·y) + m[r][2]·z) + m[r][3]·w`.
@@ -66,5 +66,24 @@ impl VertexShader for Surfaces {
         }
         let [x, y, z] = position;
         v.set_position(self.0.apply([x, y, z, F32::splat(l, 1.0)]));
+    }
+}
+
+/// Three vertices without data that cover the whole viewport at depth 0; no
+/// varyings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FullScreen;
+
+impl VertexShader for FullScreen {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        let ids = v.vertex_index();
+        let (mut x, mut y) = ([-1.0; LANES], [-1.0; LANES]);
+        for (lane, id) in ids.into_iter().enumerate() {
+            x[lane] = if id == 1 { 3.0 } else { -1.0 };
+            y[lane] = if id == 2 { 3.0 } else { -1.0 };
+        }
+        let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+        v.set_position([F32::from_array(l, &x), F32::from_array(l, &y), zero, one]);
     }
 }

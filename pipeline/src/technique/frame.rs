@@ -22,7 +22,7 @@ pub struct Frame {
 }
 
 /// The textures that hold a frame's results, at mip 0, layer 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
     /// Linear light.
     pub color: TextureId,
@@ -34,12 +34,23 @@ pub struct Outputs {
 
 /// How the light's visibility follows from a frame's textures. It is NaN where
 /// depth is 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VisibilityOutput {
     /// 1 at every surface.
     Full,
     /// 1 where the stencil is 0, else 0.
     StencilZero,
+    /// Red of a colour texture of the frame's size, at mip 0, layer 0:
+    /// `red · scale + offset`, limited to 0..=1. Integer formats give their
+    /// integers as floats.
+    Red {
+        /// The texture.
+        texture: TextureId,
+        /// Factor of red.
+        scale: f32,
+        /// Added to the product.
+        offset: f32,
+    },
 }
 
 /// How a caster's volume was counted.

@@ -10,7 +10,7 @@
 mod frame;
 mod params;
 
-use gnomon_raster::{Gpu, TextureDescriptor, TextureId};
+use gnomon_raster::{Gpu, Subresource, TextureDescriptor, TextureId};
 use thiserror::Error;
 
 pub use frame::{CasterUse, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
@@ -27,11 +27,31 @@ pub trait TextureSource {
     /// # Errors
     /// For sizes or levels that are not possible.
     fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error>;
+
+    /// Fills an image of a colour texture, rows from the top: a look-up table.
+    ///
+    /// # Errors
+    /// There is no such image, it is not colour, or it has another size.
+    fn write(
+        &mut self,
+        texture: TextureId,
+        image: Subresource,
+        texels: &[[f32; 4]],
+    ) -> Result<(), gnomon_raster::Error>;
 }
 
 impl TextureSource for Gpu {
     fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
         self.create_texture(desc)
+    }
+
+    fn write(
+        &mut self,
+        texture: TextureId,
+        image: Subresource,
+        texels: &[[f32; 4]],
+    ) -> Result<(), gnomon_raster::Error> {
+        self.texture_mut(texture)?.write_color(image, texels)
     }
 }
 

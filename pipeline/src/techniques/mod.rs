@@ -4,6 +4,7 @@ mod near_pyramid;
 mod passes;
 mod shadow_volumes;
 mod unshadowed;
+mod visibility;
 mod volume_draws;
 
 pub(crate) use shadow_volumes::ShadowVolumes;

@@ -36,9 +36,10 @@ use gnomon_raster::{
     ColorAttachment, CommandList, DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp,
     RenderPass, RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
 };
-use gnomon_shaders::surface::{Constant, Lambert, Phong};
+use gnomon_shaders::surface::{AmbientWithPosition, Constant, Lambert, Phong};
 use gnomon_shaders::transform::{ClipFromWorld, Points, Surfaces};
 
+use super::visibility::{Positions, VisibilityTexture, attachment, binding};
 use crate::light::HardLight;
 use crate::mesh::{narrow, widen};
 use crate::scene::{Camera, Material, Object, Scene};
@@ -142,12 +143,7 @@ impl Targets {
     }
 
     fn color(&self, load: LoadOp<[f32; 4]>) -> Vec<ColorAttachment> {
-        vec![ColorAttachment {
-            texture: self.color,
-            subresource: Subresource::default(),
-            load,
-            store: StoreOp::Store,
-        }]
+        vec![attachment(self.color, load)]
     }
 
     /// Depth and stencil as they are, but for the given loads.
@@ -167,13 +163,16 @@ impl Targets {
     }
 }
 
-/// Where a lit pass adds light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Where a lit pass adds light, and how much of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum LitTest {
     /// At every surface.
     Everywhere,
     /// Where the stencil is 0; objects that take no shadow set it to 0 first.
     StencilZero,
+    /// At every surface, times the visibility in a texture; objects that take no
+    /// shadow are fully lit.
+    Visibility(VisibilityTexture),
 }
 
 /// Geometry of one object, ready to draw.
@@ -187,7 +186,8 @@ struct SurfaceDraw<'a> {
 /// All objects of a scene, ready to draw in any pass.
 pub(super) struct SceneDraws<'a> {
     scene: &'a Scene,
-    view: View,
+    /// The camera that all passes share.
+    pub(super) view: View,
     surfaces: Vec<SurfaceDraw<'a>>,
     highlights: bool,
 }
@@ -212,12 +212,10 @@ impl<'a> SceneDraws<'a> {
         let [r, g, b] = self.scene.background;
         let ambient = self.scene.ambient;
         let draw = |s: &SurfaceDraw<'_>| {
-            let albedo = s.object.material.albedo;
-            let [r, g, b] = [0, 1, 2].map(|i| ambient[i] * albedo[i]);
             s.draw(RenderPipeline {
                 label: "ambient".into(),
                 vertex: Points(self.view.clip_from_world).stage(),
-                fragment: Some(Constant([r, g, b, 1.0]).stage()),
+                fragment: Some(Constant(s.ambient(ambient)).stage()),
                 primitive: s.primitive.clone(),
                 depth_stencil: DepthStencilState::opaque(),
                 color_targets: vec![ColorTargetState::OPAQUE],
@@ -231,6 +229,34 @@ impl<'a> SceneDraws<'a> {
         }
     }
 
+    /// The same, and writes where each pixel's surface is into `positions`: 16
+    /// bytes a fragment, counted as colour traffic of attachment 1.
+    pub(super) fn ambient_pass_with_positions(
+        &self,
+        targets: &Targets,
+        positions: &Positions,
+    ) -> RenderPass {
+        let draw = |s: &SurfaceDraw<'_>| {
+            let shader = AmbientWithPosition {
+                ambient: s.ambient(self.scene.ambient),
+                receives: s.object.receives,
+            };
+            s.draw(RenderPipeline {
+                label: "ambient".into(),
+                vertex: Surfaces(self.view.clip_from_world).stage(),
+                fragment: Some(shader.stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: DepthStencilState::opaque(),
+                color_targets: vec![ColorTargetState::OPAQUE; 2],
+            })
+        };
+        let mut pass = self.ambient_pass(targets);
+        pass.color
+            .push(attachment(positions.texture, LoadOp::Clear([0.0; 4])));
+        pass.draws = self.surfaces.iter().map(draw).collect();
+        pass
+    }
+
     /// Adds the light of light `light` to what the ambient pass drew.
     pub(super) fn lit_pass(
         &self,
@@ -240,14 +266,20 @@ impl<'a> SceneDraws<'a> {
         test: LitTest,
     ) -> RenderPass {
         let draw = |s: &SurfaceDraw<'_>| {
-            s.draw(RenderPipeline {
+            let visibility = match test {
+                LitTest::Visibility(v) if s.object.receives => Some(v),
+                _ => None,
+            };
+            let mut draw = s.draw(RenderPipeline {
                 label: label.to_owned(),
                 vertex: Surfaces(self.view.clip_from_world).stage(),
-                fragment: Some(self.lit_shader(&s.object.material, light)),
+                fragment: Some(self.lit_shader(&s.object.material, light, visibility)),
                 primitive: s.primitive.clone(),
                 depth_stencil: lit_state(test, s.object.receives),
                 color_targets: vec![ColorTargetState::ADDITIVE],
-            })
+            });
+            draw.textures = visibility.iter().map(|v| binding(v.texture)).collect();
+            draw
         };
         RenderPass {
             label: label.to_owned(),
@@ -257,7 +289,12 @@ impl<'a> SceneDraws<'a> {
         }
     }
 
-    fn lit_shader(&self, material: &Material, light: usize) -> FragmentStage {
+    fn lit_shader(
+        &self,
+        material: &Material,
+        light: usize,
+        visibility: Option<VisibilityTexture>,
+    ) -> FragmentStage {
         let light = &self.scene.lights[light];
         let coloured = |c: [f32; 3]| [0, 1, 2].map(|i| c[i] * light.colour[i]);
         let lambert = Lambert {
@@ -265,7 +302,10 @@ impl<'a> SceneDraws<'a> {
             light: self.view.light(light.hard()),
         };
         if !self.highlights || material.specular == [0.0; 3] {
-            return lambert.stage();
+            return match visibility {
+                Some(v) => v.shadowed(lambert).stage(),
+                None => lambert.stage(),
+            };
         }
         let phong = Phong {
             lambert,
@@ -273,7 +313,10 @@ impl<'a> SceneDraws<'a> {
             shininess: material.shininess,
             eye: narrow(self.scene.camera.eye - self.view.origin),
         };
-        phong.stage()
+        match visibility {
+            Some(v) => v.shadowed(phong).stage(),
+            None => phong.stage(),
+        }
     }
 }
 
@@ -294,6 +337,13 @@ impl<'a> SurfaceDraw<'a> {
             indices: index_buffer(&shading.triangles),
             primitive,
         }
+    }
+
+    /// Ambient light times albedo, opaque.
+    fn ambient(&self, light: [f32; 3]) -> [f32; 4] {
+        let albedo = self.object.material.albedo;
+        let [r, g, b] = [0, 1, 2].map(|i| light[i] * albedo[i]);
+        [r, g, b, 1.0]
     }
 
     fn draw(&self, pipeline: RenderPipeline) -> Draw {
@@ -343,6 +393,11 @@ impl View {
             clip_from_world: ClipFromWorld(moved.clip_from_world(aspect)),
             origin,
         }
+    }
+
+    /// A world-space position relative to the origin, as shaders have it.
+    pub(super) fn relative(&self, p: DVec3) -> DVec3 {
+        p - self.origin
     }
 
     /// A world-space position relative to the origin.
@@ -399,7 +454,7 @@ fn lit_state(test: LitTest, receives: bool) -> DepthStencilState {
                 ..equal_depth()
             }
         }
-        (LitTest::Everywhere, _) => equal_depth(),
+        (LitTest::Everywhere | LitTest::Visibility(_), _) => equal_depth(),
     }
 }
 

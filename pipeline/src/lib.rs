@@ -52,6 +52,7 @@ pub mod coverage;
 pub mod error;
 pub mod heat;
 pub mod light;
+pub mod light_samples;
 pub mod mesh;
 pub mod metrics;
 pub mod obj;

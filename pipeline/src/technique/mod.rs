@@ -17,8 +17,9 @@ pub use frame::{CasterUse, Frame, Outputs, VisibilityOutput, VolumeMethod, Warni
 pub use params::{ParamInfo, Params};
 
 use crate::caster::RefusedCaster;
+use crate::error::LightError;
 use crate::scene::Scene;
-use crate::techniques::{ShadowVolumes, Unshadowed};
+use crate::techniques::{SampledShadowVolumes, ShadowVolumes, Unshadowed};
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
 pub trait TextureSource {
@@ -81,7 +82,7 @@ pub trait Technique: Sync {
 
 /// All techniques, in the order in which they are listed.
 pub fn techniques() -> &'static [&'static dyn Technique] {
-    static LIST: &[&dyn Technique] = &[&Unshadowed, &ShadowVolumes];
+    static LIST: &[&dyn Technique] = &[&Unshadowed, &ShadowVolumes, &SampledShadowVolumes];
     LIST
 }
 
@@ -160,6 +161,9 @@ pub enum TechniqueError {
     /// A caster that is not closed.
     #[error(transparent)]
     RefusedCaster(#[from] RefusedCaster),
+    /// A light should have an extent and has none.
+    #[error(transparent)]
+    Light(#[from] LightError),
     /// The GPU refuses a texture.
     #[error(transparent)]
     Gpu(#[from] gnomon_raster::Error),

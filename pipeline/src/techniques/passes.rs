@@ -289,6 +289,23 @@ impl<'a> SceneDraws<'a> {
         }
     }
 
+    /// Draws that write 1 to red of the only colour attachment where the surfaces
+    /// of objects that take no shadow are seen.
+    pub(super) fn fully_visible(&self) -> Vec<Draw> {
+        let untouched = self.surfaces.iter().filter(|s| !s.object.receives);
+        let draw = |s: &SurfaceDraw<'_>| {
+            s.draw(RenderPipeline {
+                label: "fully visible".into(),
+                vertex: Points(self.view.clip_from_world).stage(),
+                fragment: Some(Constant([1.0, 0.0, 0.0, 0.0]).stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![ColorTargetState::OPAQUE],
+            })
+        };
+        untouched.map(draw).collect()
+    }
+
     fn lit_shader(
         &self,
         material: &Material,

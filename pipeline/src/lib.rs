@@ -48,6 +48,7 @@
 pub mod adjacency;
 pub mod area_light;
 pub mod caster;
+pub mod comparison;
 pub mod coverage;
 pub mod error;
 pub mod heat;

@@ -3,12 +3,12 @@
 use super::canvas::{Canvas, Picture};
 use super::font;
 
-const BAND: [u8; 3] = [24, 26, 30];
-const TEXT: [u8; 3] = [232, 234, 237];
-const QUIET: [u8; 3] = [154, 160, 168];
+pub(super) const BAND: [u8; 3] = [24, 26, 30];
+pub(super) const TEXT: [u8; 3] = [232, 234, 237];
+pub(super) const QUIET: [u8; 3] = [154, 160, 168];
 /// Distances in font pixels.
 const MARGIN: u32 = 6;
-const LINE: u32 = 12;
+pub(super) const LINE: u32 = 12;
 const BOX: u32 = 8;
 
 /// A colour and what it stands for.
@@ -167,8 +167,8 @@ impl Pen<'_> {
     }
 }
 
-/// Font pixels are doubled on pictures that are wide enough.
-fn text_scale(width: u32) -> u32 {
+/// Font pixels are enlarged on pictures that are wide enough.
+pub(super) fn text_scale(width: u32) -> u32 {
     (width / 480).clamp(1, 4)
 }
 
@@ -192,7 +192,7 @@ fn wrap_swatches(swatches: &[Swatch], width: u32) -> Vec<&[Swatch]> {
 }
 
 /// Words in lines of at most `width` font pixels, longer words uncut.
-fn wrap(text: &str, width: u32) -> Vec<String> {
+pub(super) fn wrap(text: &str, width: u32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {

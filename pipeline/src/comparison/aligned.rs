@@ -1,9 +1,11 @@
 //! The truth under a rendered depth buffer.
 //!
 //! A rasteriser snaps vertices to 1/256 pixel, the oracle does not; so at the
-//! outline of an object the two may see different surfaces at one pixel, and a
-//! comparison there would tell nothing of shadows. Such pixels are found by
-//! their depth, counted, and left out of the errors of visibility.
+//! outline of an object the two may see different surfaces at one pixel, and at
+//! a sharp edge different sides of it, to which the light is visible differently.
+//! A comparison there would tell nothing of shadows. Such pixels are found by
+//! their depth, and by an edge within 1/128 pixel; they are counted, and left out
+//! of the errors of visibility.
 
 use super::sight::Sight;
 use crate::metrics::MetricError;
@@ -14,8 +16,8 @@ use crate::oracle::area::VisibilityImage;
 pub struct Aligned {
     /// NaN where no surface is seen, or where the picture shows another one.
     pub truth: VisibilityImage,
-    /// Pixels where the picture shows another surface than the truth, or only
-    /// one of them shows any.
+    /// Pixels where the picture shows another surface than the truth, or may do
+    /// so, an outline or sharp edge being too near.
     pub other_surface: usize,
     /// What shading should have used: the truth, and where the picture shows
     /// another surface that of the neighbour nearest in depth. 1 where the
@@ -96,29 +98,31 @@ mod tests {
     #[test]
     fn surfaces_agree_but_at_outlines() {
         const SIZE: [u32; 2] = [120, 90];
-        for (name, most) in [
-            ("parallel-plates", 2),
-            ("cylinder", 2),
-            ("creature", 2),
-            ("columns", 2),
-            ("peer-c", 8),
-            ("adversarial-tiny", 2),
-            ("adversarial-huge", 2),
-            ("adversarial-offset", 2),
+        for name in [
+            "parallel-plates",
+            "cylinder",
+            "creature",
+            "columns",
+            "peer-c",
+            "adversarial-tiny",
+            "adversarial-huge",
+            "adversarial-offset",
         ] {
             let scene = builtin::build(name).unwrap();
             let truth = Reference::new(&scene, 0, SIZE, ReferenceKind::Exact, None, &|| {});
             let truth = truth.unwrap();
             let found = truth.under(&depth(name, SIZE)).unwrap();
+            // The landscape has a facet for every pixel or two.
+            let most = if name == "peer-c" { 1000 } else { 100 };
             assert!(
                 found.other_surface <= most,
                 "{name}: {}",
                 found.other_surface
             );
             let mut moved = depth(name, SIZE);
-            moved.rotate_right(1);
+            moved.rotate_right(SIZE[0] as usize); // a row down
             let wrong = truth.under(&moved).unwrap().other_surface;
-            assert!(wrong > 10 * most, "{name}: {wrong}");
+            assert!(wrong > 2 * most, "{name}: {wrong}");
         }
     }
 

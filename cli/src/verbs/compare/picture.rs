@@ -11,8 +11,8 @@ use crate::overlay;
 
 /// Where no surface is seen.
 const NOTHING: [u8; 3] = [58, 60, 66];
-/// Where truth and picture see different surfaces, and were not compared.
-const OTHER: [u8; 3] = [0, 0, 0];
+/// Where truth and picture may see different surfaces, and were not compared.
+const OTHER: [u8; 3] = [165, 165, 165];
 
 /// Draws the comparison.
 pub(super) fn draw(job: &Job, found: &Comparison) -> Picture {
@@ -102,7 +102,7 @@ fn legend(found: &Comparison) -> Legend {
             Swatch::new(NOTHING, "no surface"),
             Swatch::new(
                 OTHER,
-                format!("another surface than the truth's: {left_out} pixels, left out"),
+                format!("left out: {left_out} pixels at outlines and sharp edges"),
             ),
         ],
         notes: vec![format!(

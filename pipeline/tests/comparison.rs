@@ -161,6 +161,7 @@ fn negative_control_no_shadows_are_far_worse() {
     let (_, none) = bench.measure("unshadowed", &[]);
     let (_, hard) = bench.measure("shadow-volumes", &[]);
     let soft = bench.sampled(64, "rotated-grid");
+    assert!(all(&none).rmse > 1.5 * all(&hard).rmse && all(&none).max == 1.0);
     assert!(all(&hard).rmse > 10.0 * all(&soft).rmse);
     assert!(all(&none).mean > 10.0 * all(&hard).mean.abs());
     for (worse, better) in [(&none, &hard), (&hard, &soft)] {

@@ -17,7 +17,7 @@ const OTHER: [u8; 3] = [165, 165, 165];
 /// Draws the comparison.
 pub(super) fn draw(job: &Job, found: &Comparison) -> Picture {
     let mut cells = vec![truth(job, found)];
-    cells.extend(found.measured.iter().map(|m| technique(m)));
+    cells.extend(found.measured.iter().map(technique));
     legend(found).below(Grid::new(cells).draw(), diverging)
 }
 

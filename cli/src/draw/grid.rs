@@ -39,7 +39,7 @@ impl Grid {
             .first()
             .and_then(|c| c.pictures.first())
             .map_or([1, 1], Canvas::size);
-        let scale = (picture[0] / 300).clamp(1, 4);
+        let scale = (picture[0] / 240).clamp(1, 4);
         let column = picture[0].max(NARROWEST * scale);
         let lines = |c: &Cell| wrap(&c.name, column / scale).len() + c.notes.len();
         let most = cells.iter().map(lines).max().unwrap_or(0) as u32;
@@ -53,6 +53,11 @@ impl Grid {
             column,
             caption,
         }
+    }
+
+    /// Pixels of a font pixel of the captions.
+    pub(crate) fn text_scale(&self) -> u32 {
+        self.scale
     }
 
     /// Columns beside each other: as many in the last row as can be.

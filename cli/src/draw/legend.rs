@@ -41,6 +41,8 @@ pub(crate) struct Legend {
     pub(crate) swatches: Vec<Swatch>,
     /// Further lines.
     pub(crate) notes: Vec<String>,
+    /// Pixels of a font pixel; by the picture's width where there is none.
+    pub(crate) text_scale: Option<u32>,
 }
 
 impl Legend {
@@ -48,7 +50,7 @@ impl Legend {
     /// band that is wide enough to read.
     pub(crate) fn below(&self, canvas: Canvas, ramp: fn(f32) -> [u8; 3]) -> Picture {
         let [width, height] = canvas.size();
-        let scale = text_scale(width);
+        let scale = self.text_scale.unwrap_or_else(|| text_scale(width));
         let full = width.max(280 * scale);
         let lines = self.lines((full / scale).saturating_sub(2 * MARGIN));
         let band = scale * (2 * MARGIN + lines.iter().map(Line::height).sum::<u32>());
@@ -168,7 +170,7 @@ impl Pen<'_> {
 }
 
 /// Font pixels are enlarged on pictures that are wide enough.
-pub(super) fn text_scale(width: u32) -> u32 {
+fn text_scale(width: u32) -> u32 {
     (width / 480).clamp(1, 4)
 }
 
@@ -222,6 +224,7 @@ mod tests {
                 .map(|i| Swatch::new([i; 3], format!("value {i}")))
                 .collect(),
             notes: vec!["note".to_owned()],
+            text_scale: None,
         };
         let picture = legend.below(Canvas::new([1, 1], [9; 3]), heat);
         assert_eq!(picture.size[0], 280);

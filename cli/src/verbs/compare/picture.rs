@@ -18,7 +18,12 @@ const OTHER: [u8; 3] = [165, 165, 165];
 pub(super) fn draw(job: &Job, found: &Comparison) -> Picture {
     let mut cells = vec![truth(job, found)];
     cells.extend(found.measured.iter().map(technique));
-    legend(found).below(Grid::new(cells).draw(), diverging)
+    let grid = Grid::new(cells);
+    let legend = Legend {
+        text_scale: Some(grid.text_scale()),
+        ..legend(found)
+    };
+    legend.below(grid.draw(), diverging)
 }
 
 fn truth(job: &Job, found: &Comparison) -> Cell {
@@ -109,6 +114,7 @@ fn legend(found: &Comparison) -> Legend {
             "Logarithmic from {} on, which is neutral; the same scale in every comparison",
             diverging::LEAST
         )],
+        ..Legend::default()
     }
 }
 

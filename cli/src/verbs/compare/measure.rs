@@ -42,6 +42,9 @@ pub(super) fn run(job: &Job, progress: &Progress) -> Result<Comparison, CliError
         Some(&job.cache),
         &|| progress.step(),
     )?;
+    if reference.origin == Origin::Read {
+        progress.steps(u64::from(job.settings.size[1]));
+    }
     let elapsed = start.elapsed().as_secs_f64() * 1e3;
     let mut found = Comparison {
         reference_ms: (reference.origin == Origin::Computed).then_some(elapsed),

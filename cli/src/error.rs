@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use gnomon_pipeline::comparison::CompareError;
+use gnomon_pipeline::metrics::MetricError;
 use gnomon_pipeline::render::RenderError;
 use gnomon_pipeline::scene::SceneError;
 use gnomon_pipeline::technique::TechniqueError;
@@ -19,6 +21,12 @@ pub(crate) enum CliError {
     /// The scene cannot be rendered so.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// There is no truth to compare with.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// The pictures cannot be compared.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {

@@ -27,6 +27,7 @@ fn main() -> ExitCode {
 
 fn run(cli: &Cli) -> Result<(), CliError> {
     match &cli.verb {
+        Verb::Compare(args) => verbs::compare::run(args),
         Verb::Demo(args) => verbs::demo::run(args),
         Verb::Render(args) => verbs::render::run(args),
         Verb::Scenes(args) => verbs::scenes::run(args),

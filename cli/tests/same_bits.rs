@@ -64,3 +64,31 @@ fn techniques_differ() {
         unshadowed["hash"]["visibility"]
     );
 }
+
+/// Every technique that there is, so that a new one is covered when it is listed.
+#[test]
+fn no_technique_depends_on_execution() {
+    let folder = Folder::new("all-techniques");
+    let listed = folder.gnomon("techniques --json").json();
+    for technique in listed["techniques"].as_array().unwrap() {
+        let name = technique["name"].as_str().unwrap();
+        let run = |flags: &str| {
+            let size = "render creature --size 72x40 --out a.png --json";
+            folder
+                .gnomon(&format!("{size} --technique {name} {flags}"))
+                .json()
+        };
+        let reference = run("--threads 1 --tile 64 --simd scalar");
+        for flags in [
+            "--threads 3 --tile 16",
+            "--tile 128 --threads 2",
+            "--simd auto",
+        ] {
+            let other = run(flags);
+            for key in ["hash", "passes", "totals", "casters", "warnings"] {
+                assert_eq!(other[key], reference[key], "{name} {flags}: {key}");
+            }
+        }
+        assert_eq!(run("--no-skip")["hash"], reference["hash"], "{name}");
+    }
+}

@@ -60,6 +60,14 @@ fn demo_writes_pictures_and_report_and_checks_itself() {
     assert_eq!(doc["checks"]["skipping_is_invisible"], true);
     assert_eq!(doc["checks"]["methods_agree"], true);
     assert_eq!(doc["renders"].as_array().unwrap().len(), 4);
+    let rmse: Vec<f64> = doc["errors"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|e| e["rmse"].as_f64().unwrap())
+        .collect();
+    assert!(rmse[0] > 2.0 * rmse[1] && rmse[1] > 0.01, "{rmse:?}");
+    assert!(rmse[1..].iter().all(|r| *r == rmse[1]) && rmse.len() == 4);
     for file in doc["files"].as_array().unwrap() {
         assert!(
             folder.path(file["path"].as_str().unwrap()).is_file(),

@@ -48,10 +48,12 @@
 pub mod adjacency;
 pub mod area_light;
 pub mod caster;
+pub mod comparison;
 pub mod coverage;
 pub mod error;
 pub mod heat;
 pub mod light;
+pub mod light_samples;
 pub mod mesh;
 pub mod metrics;
 pub mod obj;

@@ -40,6 +40,16 @@ impl Canvas {
         Self { map }
     }
 
+    /// A picture as it is.
+    pub(crate) fn showing(picture: &Picture) -> Self {
+        let mut canvas = Self::new(picture.size, [0; 3]);
+        let to = canvas.map.pixels_mut();
+        for (out, &[r, g, b, _]) in to.iter_mut().zip(&picture.pixels) {
+            *out = premultiplied([r, g, b]);
+        }
+        canvas
+    }
+
     /// A picture, its colours multiplied by `light` in 0..=1 and half way to grey.
     pub(crate) fn dimmed(picture: &Picture, light: f32) -> Self {
         let mut canvas = Self::new(picture.size, [0; 3]);

@@ -3,12 +3,12 @@
 use super::canvas::{Canvas, Picture};
 use super::font;
 
-const BAND: [u8; 3] = [24, 26, 30];
-const TEXT: [u8; 3] = [232, 234, 237];
-const QUIET: [u8; 3] = [154, 160, 168];
+pub(super) const BAND: [u8; 3] = [24, 26, 30];
+pub(super) const TEXT: [u8; 3] = [232, 234, 237];
+pub(super) const QUIET: [u8; 3] = [154, 160, 168];
 /// Distances in font pixels.
 const MARGIN: u32 = 6;
-const LINE: u32 = 12;
+pub(super) const LINE: u32 = 12;
 const BOX: u32 = 8;
 
 /// A colour and what it stands for.
@@ -41,6 +41,8 @@ pub(crate) struct Legend {
     pub(crate) swatches: Vec<Swatch>,
     /// Further lines.
     pub(crate) notes: Vec<String>,
+    /// Pixels of a font pixel; by the picture's width where there is none.
+    pub(crate) text_scale: Option<u32>,
 }
 
 impl Legend {
@@ -48,7 +50,7 @@ impl Legend {
     /// band that is wide enough to read.
     pub(crate) fn below(&self, canvas: Canvas, ramp: fn(f32) -> [u8; 3]) -> Picture {
         let [width, height] = canvas.size();
-        let scale = text_scale(width);
+        let scale = self.text_scale.unwrap_or_else(|| text_scale(width));
         let full = width.max(280 * scale);
         let lines = self.lines((full / scale).saturating_sub(2 * MARGIN));
         let band = scale * (2 * MARGIN + lines.iter().map(Line::height).sum::<u32>());
@@ -167,7 +169,7 @@ impl Pen<'_> {
     }
 }
 
-/// Font pixels are doubled on pictures that are wide enough.
+/// Font pixels are enlarged on pictures that are wide enough.
 fn text_scale(width: u32) -> u32 {
     (width / 480).clamp(1, 4)
 }
@@ -192,7 +194,7 @@ fn wrap_swatches(swatches: &[Swatch], width: u32) -> Vec<&[Swatch]> {
 }
 
 /// Words in lines of at most `width` font pixels, longer words uncut.
-fn wrap(text: &str, width: u32) -> Vec<String> {
+pub(super) fn wrap(text: &str, width: u32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -222,6 +224,7 @@ mod tests {
                 .map(|i| Swatch::new([i; 3], format!("value {i}")))
                 .collect(),
             notes: vec!["note".to_owned()],
+            text_scale: None,
         };
         let picture = legend.below(Canvas::new([1, 1], [9; 3]), heat);
         assert_eq!(picture.size[0], 280);

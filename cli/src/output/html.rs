@@ -60,7 +60,7 @@ fn figure(figure: &Figure) -> String {
 fn table(table: &Table) -> String {
     let mut out = format!(
         "<h2>{}</h2>\n<div class=\"wide\"><table>\n<tr>",
-        escape(table.title)
+        escape(&table.title)
     );
     for name in &table.header {
         let _ = write!(out, "<th>{}</th>", escape(name));
@@ -137,8 +137,8 @@ mod tests {
             lead: String::new(),
             figures: &[],
             tables: &[Table {
-                title: "t",
-                header: vec!["a", "b"],
+                title: "t".to_owned(),
+                header: ["a", "b"].map(str::to_owned).to_vec(),
                 rows: vec![vec!["<i>".to_owned()]],
             }],
             notes: &["<script>".to_owned()],

@@ -159,7 +159,7 @@ struct CasterDocument {
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct WarningDocument {
+pub(crate) struct WarningDocument {
     code: &'static str,
     count: usize,
     message: String,
@@ -278,7 +278,8 @@ fn traffic(named: Vec<(String, Traffic)>) -> Object<TrafficDocument> {
 }
 
 impl WarningDocument {
-    fn new(warning: &Warning) -> Self {
+    /// Describes a warning.
+    pub(crate) fn new(warning: &Warning) -> Self {
         Self {
             code: warning.code,
             count: warning.count,

@@ -21,6 +21,16 @@ pub(crate) fn milliseconds(ms: f64) -> String {
     }
 }
 
+/// An error between -1 and 1 in at most six characters, and a sign where it is
+/// below 0: `0`, `0.1234`, `0.0012`, `3.4e-5`.
+pub(crate) fn error(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        0.001.. => format!("{value:.4}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
 /// `part` of `whole` in per cent; `-` of nothing, `<1%` of little.
 pub(crate) fn percent(part: u64, whole: u64) -> String {
     if whole == 0 {
@@ -64,6 +74,10 @@ mod tests {
         assert_eq!(
             [0.5, 55.0, 123.4, 2345.0].map(milliseconds),
             ["0.50 ms", "55.0 ms", "123 ms", "2.35 s"].map(str::to_owned)
+        );
+        assert_eq!(
+            [0.0, -0.25, 0.0012, 3.44e-5, -1.0].map(error),
+            ["0", "-0.2500", "0.0012", "3.4e-5", "-1.0000"].map(str::to_owned)
         );
         assert_eq!(
             (percent(1, 3), percent(0, 0)),

@@ -32,7 +32,12 @@ impl Progress {
 
     /// A step is done.
     pub(crate) fn step(&self) {
-        self.bar.inc(1);
+        self.steps(1);
+    }
+
+    /// Several steps are done, or need not be.
+    pub(crate) fn steps(&self, count: u64) {
+        self.bar.inc(count);
     }
 }
 

@@ -9,20 +9,20 @@ use gnomon_raster::{ClientTraffic, Counters, SubmitReport, Traffic};
 use super::numbers::{count, milliseconds};
 
 /// A title, named columns, rows of text. The first column is aligned to the
-/// left; a row of a single cell is a heading.
+/// left; a row of a single cell is a heading. Column names may have several lines.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    pub(crate) title: &'static str,
-    pub(crate) header: Vec<&'static str>,
+    pub(crate) title: String,
+    pub(crate) header: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
 }
 
 impl Table {
     /// An empty table.
-    pub(crate) fn new(title: &'static str, header: &[&'static str]) -> Self {
+    pub(crate) fn new(title: &str, header: &[&str]) -> Self {
         Self {
-            title,
-            header: header.to_vec(),
+            title: title.to_owned(),
+            header: header.iter().map(|&name| name.to_owned()).collect(),
             rows: Vec::new(),
         }
     }

@@ -1,6 +1,8 @@
 //! `gnomon demo`: the default scene, what each technique costs, and a proof
 //! that skipping and the choice of method change no bit.
 
+mod errors;
+
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -9,6 +11,8 @@ use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Scene, builtin};
 use gnomon_pipeline::technique::{Params, Technique, find};
 use serde::Serialize;
+
+use errors::{ErrorDocument, Errors};
 
 use crate::args::{DemoArgs, OverlayKind};
 use crate::error::CliError;
@@ -92,6 +96,7 @@ struct DemoDocument {
     checks: Checks,
     renders: Vec<RenderDocument>,
     no_skip: Vec<RenderDocument>,
+    errors: Vec<ErrorDocument>,
     files: Vec<FileDocument>,
 }
 
@@ -108,15 +113,19 @@ struct Checks {
 pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     let start = Instant::now();
     files::check_target(&args.out_dir.join("report.html"))?;
-    let progress = Progress::new((ENTRIES.len() + OVERLAYS.len()) as u64);
+    let progress = Progress::new((ENTRIES.len() + OVERLAYS.len() + 1) as u64);
     progress.doing("building the scene");
     let scene = builtin::build(SCENE).map_err(gnomon_pipeline::scene::SceneError::from)?;
     let shots = shoot(&scene, args, &progress)?;
     let checks = Checks::of(&shots);
+    progress.doing("measuring errors");
+    let errors = Errors::measure(&scene, &shots, &settings(args, 1))?;
+    progress.step();
     let mut demo = Demo {
         args,
         scene: &scene,
         shots: &shots,
+        errors: &errors,
         batch: Batch::default(),
         figures: Vec::new(),
         files: Vec::new(),
@@ -130,7 +139,9 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     drop(progress);
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
-        output::print_json(&document(args, &scene, &shots, checks, &files, seconds))?;
+        output::print_json(&document(
+            args, &scene, &shots, checks, &errors, &files, seconds,
+        ))?;
     }
     output::print_summary(&summary(args, &tables, &notes, &files, seconds), args.json)?;
     checks.verdict()
@@ -146,6 +157,14 @@ fn shoot(scene: &Scene, args: &DemoArgs, progress: &Progress) -> Result<Vec<Shot
     Ok(shots)
 }
 
+fn settings(args: &DemoArgs, repeat: u32) -> RenderSettings {
+    RenderSettings {
+        size: args.size,
+        gpu: args.gpu.config(),
+        repeat,
+    }
+}
+
 impl Shot {
     fn new(scene: &Scene, entry: &'static Entry, args: &DemoArgs) -> Result<Self, CliError> {
         let technique = find(entry.technique)?;
@@ -156,11 +175,7 @@ impl Shot {
             .collect();
         let params = super::parameters(technique, &given, args.gpu.no_skip)?;
         let plain_params = super::parameters(technique, &given, true)?;
-        let mut settings = RenderSettings {
-            size: args.size,
-            gpu: args.gpu.config(),
-            repeat: REPEAT,
-        };
+        let mut settings = settings(args, REPEAT);
         let done = render(scene, technique, &params, &settings)?;
         settings.gpu.skip = false;
         let plain = render(scene, technique, &plain_params, &settings)?;
@@ -241,6 +256,7 @@ struct Demo<'a> {
     args: &'a DemoArgs,
     scene: &'a Scene,
     shots: &'a [Shot],
+    errors: &'a Errors,
     batch: Batch,
     figures: Vec<Figure>,
     files: Vec<FileDocument>,
@@ -253,11 +269,7 @@ impl Demo<'_> {
             self.stage_picture("render", shot.entry.name, shot.entry.caption, bytes)?;
         }
         let shot = &self.shots[EXPLAINED];
-        let settings = RenderSettings {
-            size: self.args.size,
-            gpu: self.args.gpu.config(),
-            repeat: 1,
-        };
+        let settings = settings(self.args, 1);
         let heat = heat::record(self.scene, shot.technique, &shot.params, &settings)?;
         let source = overlay::Source {
             scene: self.scene,
@@ -328,6 +340,7 @@ impl Demo<'_> {
         vec![
             tables::work(&named),
             tables::traffic(&named),
+            self.errors.table(),
             skipped(self.shots),
         ]
     }
@@ -399,6 +412,7 @@ fn document(
     scene: &Scene,
     shots: &[Shot],
     checks: Checks,
+    errors: &Errors,
     files: &[FileDocument],
     seconds: f64,
 ) -> DemoDocument {
@@ -416,6 +430,7 @@ fn document(
         checks,
         renders: shots.iter().map(|s| describe(s, true)).collect(),
         no_skip: shots.iter().map(|s| describe(s, false)).collect(),
+        errors: errors.documents(),
         files: files.to_vec(),
     }
 }

@@ -1,5 +1,6 @@
 //! One file per verb.
 
+pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod render;
 pub(crate) mod scenes;
@@ -18,4 +19,16 @@ fn parameters(
     let implied = (no_skip && can_skip).then(|| "skip=off".to_owned());
     let given = settings.iter().map(|(key, value)| format!("{key}={value}"));
     Params::parse(technique, implied.into_iter().chain(given))
+}
+
+/// A scene's name with nothing in it that could leave a folder.
+fn file_stem(scene: &str) -> String {
+    let safe = |c: char| {
+        if c.is_alphanumeric() || "-_".contains(c) {
+            c
+        } else {
+            '-'
+        }
+    };
+    scene.chars().map(safe).collect()
 }

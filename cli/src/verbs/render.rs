@@ -100,17 +100,9 @@ impl Job {
     }
 }
 
-/// `out/<scene>-<technique>.png`, with nothing in it that could leave the folder.
+/// `out/<scene>-<technique>.png`.
 fn default_out(scene: &str, technique: &str) -> PathBuf {
-    let safe = |c: char| {
-        if c.is_alphanumeric() || "-_".contains(c) {
-            c
-        } else {
-            '-'
-        }
-    };
-    let name: String = scene.chars().map(safe).collect();
-    Path::new("out").join(format!("{name}-{technique}.png"))
+    Path::new("out").join(format!("{}-{technique}.png", super::file_stem(scene)))
 }
 
 /// Each kind once, in the order asked for, beside the render.

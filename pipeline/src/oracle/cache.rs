@@ -2,7 +2,8 @@
 //!
 //! The name of a file is a BLAKE3 hash of everything that decides the image:
 //! geometry to the bit, who casts, the light's shape, the camera, the size and
-//! [`super::area::ORACLE_VERSION`]. Names, materials and colours do not. A file is
+//! [`super::area::ORACLE_VERSION`], for images by shadow rays also their number,
+//! their seed and [`super::sampled::SAMPLED_VERSION`]. Names, materials and colours do not. A file is
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -28,6 +29,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
 use super::area::VisibilityImage;
+use super::sampled::SampledOracle;
+use super::surfaces::Surfaces;
 use crate::error::LightError;
 use crate::light::LightShape;
 use crate::scene::Scene;
@@ -101,9 +104,45 @@ impl OracleCache {
         row_done: &(dyn Fn() + Sync),
     ) -> Result<Cached, LightError> {
         let key = Key::of(scene, &scene.lights[light].shape, size);
+        self.image(&key, size, || {
+            VisibilityImage::of_scene(scene, light, size, row_done)
+        })
+    }
+
+    /// The same by shadow rays, `rays` being the side of the square of strata and
+    /// the seed; see [`SampledOracle`].
+    ///
+    /// # Errors
+    /// As [`OracleCache::visibility`].
+    ///
+    /// # Panics
+    /// There is no such light.
+    pub fn sampled(
+        &self,
+        scene: &Scene,
+        light: usize,
+        size: [u32; 2],
+        rays: (u32, u64),
+        row_done: &(dyn Fn() + Sync),
+    ) -> Result<Cached, LightError> {
+        let shape = &scene.lights[light].shape;
+        self.image(&Key::of_rays(scene, shape, size, rays), size, || {
+            let surfaces = Surfaces::new(scene);
+            let oracle = SampledOracle::new(&surfaces, shape, rays.0, rays.1)?;
+            Ok(oracle.image(&surfaces, scene, size, row_done))
+        })
+    }
+
+    /// The image called `key`: read, or else computed and kept.
+    fn image(
+        &self,
+        key: &Key,
+        size: [u32; 2],
+        compute: impl FnOnce() -> Result<VisibilityImage, LightError>,
+    ) -> Result<Cached, LightError> {
         let path = self.folder.join(key.file_name());
         let mut warnings = Vec::new();
-        match read(&path, &key, size) {
+        match read(&path, key, size) {
             Ok(Some(image)) => {
                 let was_read = true;
                 return Ok(Cached {
@@ -118,8 +157,8 @@ impl OracleCache {
                 problem,
             }),
         }
-        let image = VisibilityImage::of_scene(scene, light, size, row_done)?;
-        if let Err(error) = self.write(&path, &encode(&key, &image)) {
+        let image = compute()?;
+        if let Err(error) = self.write(&path, &encode(key, &image)) {
             let problem = error.to_string();
             warnings.push(CacheWarning::NotWritten { path, problem });
         }
@@ -268,6 +307,21 @@ mod tests {
         assert!(first.image == second.image && first.image.values.iter().any(|v| v.is_nan()));
         assert!(first.warnings.is_empty() && second.warnings.is_empty());
         assert_eq!(folder.files().len(), 1, "no unfinished file is left");
+    }
+
+    #[test]
+    fn images_by_rays_are_kept_apart() {
+        let folder = Folder::new("rays");
+        let cache = OracleCache::new(&folder.0);
+        let exact = get(&cache, &scene()).image;
+        let by = |rays| cache.sampled(&scene(), 0, SIZE, rays, &|| {}).unwrap();
+        let (first, again, other) = (by((4, 7)), by((4, 7)), by((4, 8)));
+        assert_eq!(
+            [&first, &again, &other].map(|c| c.was_read),
+            [false, true, false]
+        );
+        assert!(first.image == again.image && first.image != other.image);
+        assert!(first.image != exact && folder.files().len() == 3);
     }
 
     #[test]

@@ -16,6 +16,10 @@ use crate::error::LightError;
 use crate::light::{HardLight, LightShape};
 use crate::scene::Scene;
 
+/// Raised with every change of the values that this module finds, as
+/// [`super::area::ORACLE_VERSION`].
+pub const SAMPLED_VERSION: u32 = 1;
+
 /// Where shadow rays end, as a share of the way to the light: what lies in the
 /// light, such as the lamp's own mesh, is not in between.
 const RAY_END: f64 = 1.0 - 1e-12;
@@ -152,7 +156,7 @@ impl SampledOracle {
 }
 
 /// Carries the unit square onto the light; equal areas stay equal.
-fn on_light(light: &FlatLight<'_>, [a, b]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn on_light(light: &FlatLight<'_>, [a, b]: [f64; 2]) -> [f64; 2] {
     if light.is_disc() {
         let (radius, angle) = (a.sqrt(), std::f64::consts::TAU * b);
         return [radius * libm::cos(angle), radius * libm::sin(angle)];
@@ -175,7 +179,7 @@ fn on_light(light: &FlatLight<'_>, [a, b]: [f64; 2]) -> [f64; 2] {
 }
 
 /// A number in 0..1 from a hash (splitmix64's finaliser, twice).
-fn jitter(seed: u64, key: u64) -> f64 {
+pub(crate) fn jitter(seed: u64, key: u64) -> f64 {
     let mixed = mix(mix(seed.wrapping_add(0x9e37_79b9_7f4a_7c15)) ^ key);
     (mixed >> 11) as f64 / (1u64 << 53) as f64
 }

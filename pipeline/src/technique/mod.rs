@@ -17,10 +17,11 @@ pub use frame::{CasterUse, Frame, Outputs, VisibilityOutput, VolumeMethod, Warni
 pub use params::{ParamInfo, Params};
 
 use crate::caster::RefusedCaster;
+use crate::error::LightError;
 use crate::scene::Scene;
 use crate::techniques::{
-    PenumbraWedges, PenumbraWedgesRestructured, ShadowVolumes, SoftShadowVolumes,
-    SoftShadowVolumesOptimised, Unshadowed,
+    PenumbraWedges, PenumbraWedgesRestructured, SampledShadowVolumes, ShadowVolumes,
+    SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed,
 };
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
@@ -87,6 +88,7 @@ pub fn techniques() -> &'static [&'static dyn Technique] {
     static LIST: &[&dyn Technique] = &[
         &Unshadowed,
         &ShadowVolumes,
+        &SampledShadowVolumes,
         &PenumbraWedges,
         &PenumbraWedgesRestructured,
         &SoftShadowVolumes,
@@ -182,6 +184,9 @@ pub enum TechniqueError {
     /// A caster that is not closed.
     #[error(transparent)]
     RefusedCaster(#[from] RefusedCaster),
+    /// A light should have an extent and has none.
+    #[error(transparent)]
+    Light(#[from] LightError),
     /// The GPU refuses a texture.
     #[error(transparent)]
     Gpu(#[from] gnomon_raster::Error),

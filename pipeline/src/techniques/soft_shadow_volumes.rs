@@ -27,7 +27,7 @@ use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
 use gnomon_shaders::transform::FullScreen;
 
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
-use super::shadow_volumes::{OPEN_CASTERS, SKIP, policy};
+use super::volume_draws::{OPEN_CASTERS, SKIP, policy};
 use super::soft::count::Counting;
 use super::soft::covering::{
     BACKEND, Covering, LIGHT_FRAME, LIGHT_IMAGE, TEXTURE_CENTRED, TEXTURE_FILTER, TEXTURE_SIZE,

@@ -28,7 +28,7 @@ use gnomon_shaders::split_volumes::{
 use gnomon_shaders::transform::FullScreen;
 
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
-use super::shadow_volumes::{OPEN_CASTERS, SKIP, policy};
+use super::volume_draws::{OPEN_CASTERS, SKIP, policy};
 use super::soft::count::Counting;
 use super::soft::edges::{Casters, Silhouettes};
 use super::soft::light::{LightSide, SoftLight, split};

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::light::LightShape;
 use crate::oracle::area::ORACLE_VERSION;
+use crate::oracle::sampled::SAMPLED_VERSION;
 use crate::scene::Scene;
 
 /// Hash of everything that decides an oracle image.
@@ -25,6 +26,20 @@ impl Key {
         hasher.points(&[camera.eye, camera.target, camera.up]);
         hasher.numbers(&[camera.fov_y_degrees, camera.near]);
         hasher.light(light);
+        Self(*hasher.0.finalize().as_bytes())
+    }
+
+    /// The same for shadow rays: `side * side` to a pixel, jittered by `seed`.
+    pub(super) fn of_rays(
+        scene: &Scene,
+        light: &LightShape,
+        size: [u32; 2],
+        (side, seed): (u32, u64),
+    ) -> Self {
+        let mut hasher = Hasher(blake3::Hasher::new());
+        hasher.0.update(b"rays");
+        hasher.0.update(&Self::of(scene, light, size).0);
+        hasher.integers([SAMPLED_VERSION, side, seed as u32, (seed >> 32) as u32]);
         Self(*hasher.0.finalize().as_bytes())
     }
 
@@ -139,6 +154,9 @@ mod tests {
             keys.push(key(&|s| light(s, shape.clone())));
         }
         keys.push(Key::of(&scene(), &scene().lights[0].shape, [16, 24]));
+        for rays in [(8, 1), (9, 1), (8, 2), (8, 1 << 32)] {
+            keys.push(Key::of_rays(&scene(), &scene().lights[0].shape, SIZE, rays));
+        }
         keys.push(plain.clone());
         let mut names: Vec<String> = keys.iter().map(Key::file_name).collect();
         names.sort_unstable();

@@ -1,0 +1,131 @@
+//! What the command line asked for, checked.
+
+use std::path::PathBuf;
+
+use gnomon_pipeline::comparison::{CompareError, ReferenceKind};
+use gnomon_pipeline::oracle::cache::OracleCache;
+use gnomon_pipeline::render::RenderSettings;
+use gnomon_pipeline::scene::{self, Scene};
+use gnomon_pipeline::technique::{Params, Technique, find};
+
+use crate::args::{CompareArgs, EntryArg};
+use crate::error::CliError;
+use crate::output::files;
+use crate::verbs;
+
+const DEFAULT_SIZE: [u32; 2] = [640, 480];
+
+/// A comparison, ready to run.
+pub(super) struct Job {
+    pub(super) scene: Scene,
+    /// Number of the light that shines.
+    pub(super) light: usize,
+    pub(super) entries: Vec<Entry>,
+    pub(super) reference: ReferenceKind,
+    pub(super) cache: OracleCache,
+    pub(super) settings: RenderSettings,
+    /// The picture.
+    pub(super) out: PathBuf,
+}
+
+/// A technique with parameters.
+pub(super) struct Entry {
+    pub(super) technique: &'static dyn Technique,
+    pub(super) params: Params,
+    /// Name and the settings that were given.
+    pub(super) label: String,
+}
+
+impl Job {
+    pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
+        let entries = args.techniques.iter().map(|arg| Entry::new(arg, args));
+        let entries = entries.collect::<Result<Vec<Entry>, CliError>>()?;
+        check_settings(args)?;
+        let scene = scene::open(&args.scene)?;
+        let (given, count) = (args.light, scene.lights.len());
+        if given >= count {
+            return Err(CompareError::NoSuchLight { given, count }.into());
+        }
+        let name = verbs::file_stem(&scene.name);
+        let out = args.out_dir.join(format!("{name}-compare.png"));
+        files::check_target(&out)?;
+        Ok(Self {
+            light: args.light,
+            entries,
+            reference: args.reference,
+            cache: OracleCache::new(args.out_dir.join("oracle-cache")),
+            settings: RenderSettings {
+                size: args.size.or(scene.size).unwrap_or(DEFAULT_SIZE),
+                gpu: args.gpu.config(),
+                repeat: args.repeat,
+            },
+            scene,
+            out,
+        })
+    }
+
+    /// Steps of progress: rows of the truth, techniques, the picture.
+    pub(super) fn steps(&self) -> u64 {
+        u64::from(self.settings.size[1]) + self.entries.len() as u64 + 1
+    }
+}
+
+impl Entry {
+    fn new(arg: &EntryArg, args: &CompareArgs) -> Result<Self, CliError> {
+        let technique = find(&arg.technique)?;
+        let for_all = args
+            .settings
+            .iter()
+            .filter(|s| s.technique == technique.name());
+        let given: Vec<(String, String)> = for_all
+            .map(|s| s.setting.clone())
+            .chain(arg.settings.iter().cloned())
+            .collect();
+        if let Some((_, value)) = given.iter().find(|(key, _)| key == LIGHT) {
+            return Err(CliError::Flag {
+                flag: "light",
+                value: value.clone(),
+                valid: "one light is compared at a time: choose it with --light N".to_owned(),
+            });
+        }
+        let mut label = technique.name().to_owned();
+        for (key, value) in &given {
+            label += &format!(" {key}={value}");
+        }
+        let has_lights = technique.params().iter().any(|p| p.name == LIGHT);
+        let light = (LIGHT.to_owned(), args.light.to_string());
+        let all: Vec<_> = has_lights
+            .then_some(light)
+            .into_iter()
+            .chain(given)
+            .collect();
+        Ok(Self {
+            technique,
+            params: verbs::parameters(technique, &all, args.gpu.no_skip)?,
+            label,
+        })
+    }
+}
+
+/// The parameter by which techniques choose lights.
+const LIGHT: &str = "light";
+
+/// Settings of techniques that are not compared would go unnoticed.
+fn check_settings(args: &CompareArgs) -> Result<(), CliError> {
+    for given in &args.settings {
+        find(&given.technique)?;
+        if !args
+            .techniques
+            .iter()
+            .any(|t| t.technique == given.technique)
+        {
+            let (key, value) = &given.setting;
+            return Err(CliError::Flag {
+                flag: "--set",
+                value: format!("{}.{key}={value}", given.technique),
+                valid: format!("'{}' is not among --techniques", given.technique),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,65 @@
+//! Techniques against the truth: what `gnomon compare` measures.
+//!
+//! A [`Reference`] is the visibility of one light as an oracle finds it
+//! (IMPLEMENTING §4, references 1 and 2). [`Reference::under`] lines it up with
+//! a rendered depth buffer, and [`Score::measure`] compares a technique's
+//! visibility and picture with the result.
+//!
+//! A hard shadow is off by up to the whole light in the penumbra, and by
+//! nothing in the umbra that it has:
+//!
+//! ```
+//! use gnomon_pipeline::comparison::{Reference, ReferenceKind, Score, shaded};
+//! use gnomon_pipeline::oracle::area::LightRegion;
+//! use gnomon_pipeline::render::{self, RenderSettings};
+//! use gnomon_pipeline::{scene::builtin, technique};
+//!
+//! let scene = builtin::build("parallel-plates")?;
+//! let settings = RenderSettings { size: [64, 48], ..RenderSettings::default() };
+//! let truth = Reference::new(&scene, 0, settings.size, ReferenceKind::Exact, None, &|| {})?;
+//! let shadows = technique::find("shadow-volumes")?;
+//! let done = render::render(&scene, shadows, &technique::Params::defaults(shadows), &settings)?;
+//! let under = truth.under(&done.depth)?;
+//! let shaded = shaded(&scene, &truth, &under, &technique::Params::defaults(shadows), &settings)?;
+//! let score = Score::measure(&under, &done, &shaded)?;
+//! assert_eq!(score.visibility.of_region(LightRegion::Umbra).unwrap().max, 0.0);
+//! assert!(score.psnr < 40.0);
+//! assert!(score.visibility.of_region(LightRegion::Penumbra).unwrap().rmse > 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod aligned;
+mod reference;
+mod score;
+mod shaded;
+mod sight;
+
+use thiserror::Error;
+
+pub use aligned::Aligned;
+pub use reference::{Origin, RAYS_SEED, RAYS_SIDE, Reference, ReferenceKind, UnknownReference};
+pub use score::{BANDING_EDGE, Score};
+pub use shaded::{ShadingKey, shaded};
+
+use crate::error::LightError;
+use crate::metrics::MetricError;
+
+/// Why nothing could be compared.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A light that the scene does not have.
+    #[error("light {given} was asked for; the scene has {count}, numbered from 0")]
+    NoSuchLight {
+        /// The number given.
+        given: usize,
+        /// Number of lights of the scene.
+        count: usize,
+    },
+    /// The light cannot be integrated over.
+    #[error(transparent)]
+    Light(#[from] LightError),
+    /// The images do not fit together.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
+}

@@ -1,5 +1,6 @@
 //! The techniques, one file each; the list is [`crate::technique::techniques`].
 
+mod casters;
 mod given_visibility;
 mod near_pyramid;
 mod passes;

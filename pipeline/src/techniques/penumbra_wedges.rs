@@ -42,8 +42,8 @@ use gnomon_shaders::penumbra::crossing::WedgeCrossing;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 use gnomon_shaders::transform::HomogeneousPoints;
 
+use super::casters::{self, Examined, OPEN_CASTERS};
 use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::penumbra::casters::{self, Examined, OPEN_CASTERS};
 use super::penumbra::light::{self, LightSphere};
 use super::penumbra::report::Met;
 use super::penumbra::screen::{self, Screen};
@@ -106,7 +106,7 @@ impl Technique for PenumbraWedges {
     ) -> Result<Frame, TechniqueError> {
         let targets = Targets::create(size, params, textures)?;
         let draws = SceneDraws::new(scene, size, params);
-        let casters = casters::examine(scene, self.name(), params)?;
+        let casters = casters::examine(self.name(), scene, params)?;
         let lights = passes::lights(scene, params)?;
         let builder = Builder {
             scene,

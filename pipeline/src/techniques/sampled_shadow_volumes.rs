@@ -24,6 +24,7 @@ use gnomon_raster::{Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureDes
 use gnomon_shaders::surface::Constant;
 use gnomon_shaders::transform::FullScreen;
 
+use super::casters;
 use super::passes::{self, LitTest, SceneDraws, Targets};
 use super::visibility::{VisibilityTexture, attachment, full_screen};
 use super::volume_draws::{self, Casters};
@@ -84,9 +85,9 @@ impl Technique for SampledShadowVolumes {
             SEED,
             ACCUMULATION,
             volume_draws::METHOD,
-            volume_draws::OPEN_CASTERS,
+            casters::OPEN_CASTERS,
             passes::LIGHT,
-            volume_draws::SKIP,
+            casters::SKIP,
             passes::SHADING,
             passes::COLOR_FORMAT,
             passes::DEPTH_FORMAT,

@@ -14,6 +14,7 @@
 
 use gnomon_raster::{Draw, LoadOp, RenderPass};
 
+use super::casters;
 use super::passes::{self, LitTest, SceneDraws, Targets};
 use super::volume_draws::{self, Casters};
 use crate::scene::Scene;
@@ -36,9 +37,9 @@ impl Technique for ShadowVolumes {
     fn params(&self) -> &'static [ParamInfo] {
         const PARAMS: &[ParamInfo] = &[
             volume_draws::METHOD,
-            volume_draws::OPEN_CASTERS,
+            casters::OPEN_CASTERS,
             passes::LIGHT,
-            volume_draws::SKIP,
+            casters::SKIP,
             passes::SHADING,
             passes::COLOR_FORMAT,
             passes::DEPTH_FORMAT,

@@ -26,8 +26,8 @@ use gnomon_raster::{
 use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
 use gnomon_shaders::transform::FullScreen;
 
+use super::casters::{OPEN_CASTERS, SKIP};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
-use super::volume_draws::{OPEN_CASTERS, SKIP, policy};
 use super::soft::count::Counting;
 use super::soft::covering::{
     BACKEND, Covering, LIGHT_FRAME, LIGHT_IMAGE, TEXTURE_CENTRED, TEXTURE_FILTER, TEXTURE_SIZE,
@@ -118,7 +118,7 @@ impl Technique for SoftShadowVolumes {
         let positions = Positions::create(size, textures)?;
         let buffers = Buffers::create(size, params, textures)?;
         let draws = SceneDraws::new(scene, size, params);
-        let casters = Casters::new(scene, policy(self.name(), params)?)?;
+        let casters = Casters::new(self.name(), scene, params)?;
         let lights = passes::lights(scene, params)?;
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut warnings = Vec::new();

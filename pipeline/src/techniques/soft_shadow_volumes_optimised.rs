@@ -27,8 +27,8 @@ use gnomon_shaders::split_volumes::{
 };
 use gnomon_shaders::transform::FullScreen;
 
+use super::casters::{OPEN_CASTERS, SKIP};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
-use super::volume_draws::{OPEN_CASTERS, SKIP, policy};
 use super::soft::count::Counting;
 use super::soft::edges::{Casters, Silhouettes};
 use super::soft::light::{LightSide, SoftLight, split};
@@ -116,7 +116,7 @@ impl Technique for SoftShadowVolumesOptimised {
         let positions = Positions::create(size, textures)?;
         let buffers = Buffers::create(size, textures)?;
         let draws = SceneDraws::new(scene, size, params);
-        let casters = Casters::new(scene, policy(self.name(), params)?)?;
+        let casters = Casters::new(self.name(), scene, params)?;
         let lights = passes::lights(scene, params)?;
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut warnings = Vec::new();

@@ -6,9 +6,9 @@ use gnomon_raster::state::{ColorTargetState, DepthStencilState};
 use gnomon_raster::{Draw, RenderPipeline, VertexBuffer};
 use gnomon_shaders::transform::HomogeneousPoints;
 
+use super::casters::{self, Examined, SKIP};
 use super::near_pyramid::{NearPyramid, outside_view};
 use super::passes::{self, View};
-use crate::caster::{Caster, CasterPolicy, UnknownPolicy};
 use crate::light::HardLight;
 use crate::scene::{Object, Scene};
 use crate::technique::{CasterUse, ParamInfo, Params, TechniqueError, VolumeMethod, Warning};
@@ -21,34 +21,6 @@ pub(super) const METHOD: ParamInfo = ParamInfo {
     summary: "auto: z-pass for casters that cannot shadow the near rectangle, z-fail for the others",
 };
 
-pub(super) const OPEN_CASTERS: ParamInfo = ParamInfo {
-    name: "open-casters",
-    default: "refuse",
-    valid: "refuse|generalised",
-    summary: "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
-};
-
-pub(super) const SKIP: ParamInfo = ParamInfo {
-    name: "skip",
-    default: "on",
-    valid: "on|off",
-    summary: "leave out casters whose volume is outside the view; same bits",
-};
-
-/// What is to be done with casters that are not closed.
-pub(super) fn policy(
-    technique: &'static str,
-    params: &Params,
-) -> Result<CasterPolicy, TechniqueError> {
-    let bad = |UnknownPolicy(value)| TechniqueError::BadValue {
-        technique,
-        key: OPEN_CASTERS.name,
-        value,
-        valid: OPEN_CASTERS.valid,
-    };
-    params.get(OPEN_CASTERS.name).parse().map_err(bad)
-}
-
 /// The casters of a scene, examined once for all lights.
 pub(super) struct Casters<'a> {
     scene: &'a Scene,
@@ -56,7 +28,7 @@ pub(super) struct Casters<'a> {
     size: [u32; 2],
     method: Option<VolumeMethod>,
     skip: bool,
-    examined: Vec<(usize, &'a Object, Caster)>,
+    examined: Vec<Examined<'a>>,
 }
 
 /// The volumes of all casters for one light point.
@@ -81,13 +53,6 @@ impl<'a> Casters<'a> {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Self, TechniqueError> {
-        let policy = policy(technique, params)?;
-        let casters = scene
-            .objects
-            .iter()
-            .enumerate()
-            .filter(|(_, o)| o.casts && !o.mesh.triangles().is_empty());
-        let examined = casters.map(|(i, o)| Ok((i, o, Caster::of_object(o, policy)?)));
         Ok(Self {
             scene,
             view: View::new(&scene.camera, size),
@@ -98,7 +63,7 @@ impl<'a> Casters<'a> {
                 _ => None,
             },
             skip: params.get(SKIP.name) != "off",
-            examined: examined.collect::<Result<_, TechniqueError>>()?,
+            examined: casters::examine(technique, scene, params)?,
         })
     }
 
@@ -112,7 +77,12 @@ impl<'a> Casters<'a> {
     ) -> Volumes {
         let pyramid = NearPyramid::new(&self.scene.camera, self.size, hard);
         let mut built = Volumes::default();
-        for (number, object, caster) in &self.examined {
+        for Examined {
+            number,
+            object,
+            caster,
+        } in &self.examined
+        {
             let mesh = &object.mesh;
             let hidden = self.skip && outside_view(&self.scene.camera, self.size, mesh, hard);
             let method = match self.method {

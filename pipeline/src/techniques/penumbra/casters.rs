@@ -1,63 +1,15 @@
-//! The casters of a scene and their soft volumes, light after light.
+//! The soft volumes of casters, light after light.
 
 use glam::DVec3;
 
 use super::light::LightSphere;
 use super::report::Met;
 use super::volume::SoftVolume;
-use crate::caster::{Caster, CasterPolicy, Counting, UnknownPolicy};
 use crate::light::HardLight;
 use crate::mesh::Mesh;
-use crate::scene::{Object, Scene};
-use crate::silhouette::{Orientation, Silhouette, light_facing};
 use crate::silhouette_loops::SilhouetteLoops;
-use crate::technique::{ParamInfo, Params, TechniqueError};
+use crate::techniques::casters::Examined;
 use crate::wedge::paper1::LinkedSettings;
-
-pub(in crate::techniques) const OPEN_CASTERS: ParamInfo = ParamInfo {
-    name: "open-casters",
-    default: "refuse",
-    valid: "refuse|generalised",
-    summary: "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
-};
-
-/// A caster of a scene, examined once for all lights.
-pub(in crate::techniques) struct Examined<'a> {
-    /// Index into [`Scene::objects`].
-    pub(in crate::techniques) number: usize,
-    pub(in crate::techniques) object: &'a Object,
-    pub(in crate::techniques) caster: Caster,
-}
-
-/// All casters of the scene.
-pub(in crate::techniques) fn examine<'a>(
-    scene: &'a Scene,
-    technique: &'static str,
-    params: &Params,
-) -> Result<Vec<Examined<'a>>, TechniqueError> {
-    let given = params.get(OPEN_CASTERS.name);
-    let policy: CasterPolicy =
-        given
-            .parse()
-            .map_err(|UnknownPolicy(value)| TechniqueError::BadValue {
-                technique,
-                key: OPEN_CASTERS.name,
-                value,
-                valid: OPEN_CASTERS.valid,
-            })?;
-    let objects = scene.objects.iter().enumerate();
-    objects
-        .filter(|(_, o)| o.casts && !o.mesh.triangles().is_empty())
-        .map(|(number, object)| {
-            let caster = Caster::of_object(object, policy)?;
-            Ok(Examined {
-                number,
-                object,
-                caster,
-            })
-        })
-        .collect()
-}
 
 impl Examined<'_> {
     /// The wedges and the front volume for a spherical light; `met` counts what
@@ -77,12 +29,7 @@ impl Examined<'_> {
 
     /// Points along each silhouette loop.
     fn loops(&self, mesh: &Mesh, light: HardLight, met: &mut Met) -> Vec<Vec<DVec3>> {
-        let facing = light_facing(mesh, light);
-        let orientation = match self.caster.counting(mesh, light) {
-            Counting::LightFacing => Orientation::closed(&facing),
-            Counting::AllTriangles => Orientation::generalised(&facing),
-        };
-        let silhouette = Silhouette::new(mesh, self.caster.adjacency(), &orientation);
+        let silhouette = self.silhouette(light);
         // Silhouettes of orientations always balance; none is drawn if not.
         let Ok(loops) = SilhouetteLoops::new(&silhouette) else {
             met.unbalanced += 1;

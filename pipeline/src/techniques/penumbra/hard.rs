@@ -13,10 +13,10 @@ use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::buffers::Boundary;
 use gnomon_shaders::transform::HomogeneousPoints;
 
-use super::casters::Examined;
 use crate::light::HardLight;
 use crate::scene::Scene;
 use crate::technique::{CasterUse, VolumeMethod};
+use crate::techniques::casters::Examined;
 use crate::techniques::near_pyramid::NearPyramid;
 use crate::techniques::passes::{self, View};
 

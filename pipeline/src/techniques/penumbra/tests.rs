@@ -4,13 +4,13 @@
 use glam::{DMat4, DVec3, DVec4};
 use gnomon_raster::{Gpu, GpuConfig, Subresource};
 
-use super::casters::{self, Examined};
 use super::light::LightSphere;
 use super::report::Met;
 use super::volume::SoftVolume;
 use crate::light::{HardLight, LightShape};
 use crate::scene::{Scene, builtin};
 use crate::technique::{self, Params, VisibilityOutput};
+use crate::techniques::casters::{self, Examined};
 use crate::techniques::passes::View;
 use crate::wedge::paper1::{LinkedSettings, smoothed};
 
@@ -47,7 +47,7 @@ impl<'a> Reference<'a> {
         let sphere = LightSphere::of(&scene.lights[0]).unwrap();
         let technique = technique::find("penumbra-wedges").unwrap();
         let params = Params::defaults(technique);
-        let casters = casters::examine(scene, technique.name(), &params).unwrap();
+        let casters = casters::examine(technique.name(), scene, &params).unwrap();
         let mut met = Met::default();
         let settings = LinkedSettings::default();
         let volumes = casters

@@ -53,8 +53,8 @@ use gnomon_raster::TextureId;
 use gnomon_shaders::penumbra::inside::{Culling, TileTest, WedgeInside};
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
+use super::casters::{self, Examined, OPEN_CASTERS};
 use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::penumbra::casters::{self, Examined, OPEN_CASTERS};
 use super::penumbra::hard::Method;
 use super::penumbra::screen::Screen;
 use super::penumbra::{self, EXTRA_WEDGES, INTERPOLATION};
@@ -164,7 +164,7 @@ pub(crate) fn build(
 ) -> Result<Built, TechniqueError> {
     let targets = Targets::create(size, params, textures)?;
     let draws = SceneDraws::new(scene, size, params);
-    let casters = casters::examine(scene, PenumbraWedgesRestructured.name(), params)?;
+    let casters = casters::examine(PenumbraWedgesRestructured.name(), scene, params)?;
     let lights = passes::lights(scene, params)?;
     let choices = Choices::new(params, size);
     let mut list = vec![draws.ambient_pass(&targets)];

@@ -7,11 +7,11 @@
 
 use glam::DVec3;
 
-use crate::caster::{Caster, CasterPolicy, Counting, RefusedCaster};
 use crate::light::HardLight;
 use crate::mesh::narrow;
 use crate::scene::{Camera, Scene};
-use crate::silhouette::{Orientation, Silhouette, light_facing};
+use crate::technique::{Params, TechniqueError};
+use crate::techniques::casters::{self, Examined};
 use crate::wedge::hard_plane;
 use crate::winding::volume_winding;
 
@@ -37,21 +37,20 @@ pub(crate) struct Silhouettes {
 
 /// The casters of a scene, examined once for all lights.
 pub(crate) struct Casters<'a> {
-    scene: &'a Scene,
-    examined: Vec<(usize, Caster)>,
+    camera: &'a Camera,
+    examined: Vec<Examined<'a>>,
 }
 
 impl<'a> Casters<'a> {
-    pub(crate) fn new(scene: &'a Scene, policy: CasterPolicy) -> Result<Self, RefusedCaster> {
-        let casters = scene
-            .objects
-            .iter()
-            .enumerate()
-            .filter(|(_, o)| o.casts && !o.mesh.triangles().is_empty());
-        let examined = casters.map(|(i, o)| Ok((i, Caster::of_object(o, policy)?)));
+    /// For `technique`, which has the parameter of [`casters`].
+    pub(crate) fn new(
+        technique: &'static str,
+        scene: &'a Scene,
+        params: &Params,
+    ) -> Result<Self, TechniqueError> {
         Ok(Self {
-            scene,
-            examined: examined.collect::<Result<_, _>>()?,
+            camera: &scene.camera,
+            examined: casters::examine(technique, scene, params)?,
         })
     }
 
@@ -68,22 +67,17 @@ impl<'a> Casters<'a> {
     /// Silhouettes seen from `centre`, caster by caster.
     pub(crate) fn each(&self, centre: DVec3) -> Vec<Silhouettes> {
         let light = HardLight::Point(centre);
-        let eye = beside_eye(&self.scene.camera);
-        let of = |(number, caster): &(usize, Caster)| {
-            let mesh = &self.scene.objects[*number].mesh;
-            let facing = light_facing(mesh, light);
-            let orientation = match caster.counting(mesh, light) {
-                Counting::LightFacing => Orientation::closed(&facing),
-                Counting::AllTriangles => Orientation::generalised(&facing),
-            };
-            let silhouette = Silhouette::new(mesh, caster.adjacency(), &orientation);
+        let eye = beside_eye(self.camera);
+        let of = |examined: &Examined<'_>| {
+            let mesh = &examined.object.mesh;
+            let silhouette = examined.silhouette(light);
             let point = |i: u32| mesh.position(i);
             let edges = silhouette.edges.iter();
             Silhouettes {
                 edges: edges
                     .map(|&[a, b]| SoftEdge::new([point(a), point(b)], centre, eye))
                     .collect(),
-                eye_count: volume_winding(&caster.volume(mesh, light), eye),
+                eye_count: volume_winding(&examined.caster.volume(mesh, light), eye),
             }
         };
         self.examined.iter().map(of).collect()

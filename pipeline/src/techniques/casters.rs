@@ -1,0 +1,72 @@
+//! The casters of a scene, examined once for all its lights.
+
+use crate::caster::{Caster, CasterPolicy, Counting, UnknownPolicy};
+use crate::light::HardLight;
+use crate::scene::{Object, Scene};
+use crate::silhouette::{Orientation, Silhouette, light_facing};
+use crate::technique::{ParamInfo, Params, TechniqueError};
+
+pub(super) const OPEN_CASTERS: ParamInfo = ParamInfo {
+    name: "open-casters",
+    default: "refuse",
+    valid: "refuse|generalised",
+    summary: "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
+};
+
+pub(super) const SKIP: ParamInfo = ParamInfo {
+    name: "skip",
+    default: "on",
+    valid: "on|off",
+    summary: "leave out casters whose volume is outside the view; same bits",
+};
+
+/// An object that casts shadows.
+pub(super) struct Examined<'a> {
+    /// Index into [`Scene::objects`].
+    pub(super) number: usize,
+    pub(super) object: &'a Object,
+    pub(super) caster: Caster,
+}
+
+/// All casters of the scene, for `technique`, which has [`OPEN_CASTERS`].
+///
+/// # Errors
+/// A caster is not closed and must be.
+pub(super) fn examine<'a>(
+    technique: &'static str,
+    scene: &'a Scene,
+    params: &Params,
+) -> Result<Vec<Examined<'a>>, TechniqueError> {
+    let bad = |UnknownPolicy(value)| TechniqueError::BadValue {
+        technique,
+        key: OPEN_CASTERS.name,
+        value,
+        valid: OPEN_CASTERS.valid,
+    };
+    let policy: CasterPolicy = params.get(OPEN_CASTERS.name).parse().map_err(bad)?;
+    let objects = scene.objects.iter().enumerate();
+    objects
+        .filter(|(_, o)| o.casts && !o.mesh.triangles().is_empty())
+        .map(|(number, object)| {
+            let caster = Caster::of_object(object, policy)?;
+            Ok(Examined {
+                number,
+                object,
+                caster,
+            })
+        })
+        .collect()
+}
+
+impl Examined<'_> {
+    /// The silhouette edges seen from `light`.
+    pub(super) fn silhouette(&self, light: HardLight) -> Silhouette {
+        let mesh = &self.object.mesh;
+        let facing = light_facing(mesh, light);
+        let orientation = match self.caster.counting(mesh, light) {
+            Counting::LightFacing => Orientation::closed(&facing),
+            Counting::AllTriangles => Orientation::generalised(&facing),
+        };
+        Silhouette::new(mesh, self.caster.adjacency(), &orientation)
+    }
+}

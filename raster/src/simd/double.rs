@@ -36,8 +36,13 @@ impl<L: Lanes> F64<L> {
     /// Exact.
     #[inline(always)]
     pub(crate) fn from_f32(x: F32<L>) -> Self {
-        let (lo, hi) = x.l.isa().widen_f32x16(x.v);
-        Self { lo, hi, l: x.l }
+        x.l.op(
+            #[inline(always)]
+            || {
+                let (lo, hi) = x.l.isa().widen_f32x16(x.v);
+                Self { lo, hi, l: x.l }
+            },
+        )
     }
 
     #[inline(always)]
@@ -51,7 +56,10 @@ impl<L: Lanes> F64<L> {
 
     #[inline(always)]
     pub(crate) fn to_f32(self) -> F32<L> {
-        F32::new(self.l, self.l.isa().narrow_f64x8(self.lo, self.hi))
+        self.l.op(
+            #[inline(always)]
+            || F32::new(self.l, self.l.isa().narrow_f64x8(self.lo, self.hi)),
+        )
     }
 
     #[inline(always)]
@@ -65,9 +73,15 @@ impl<L: Lanes> F64<L> {
     /// Low and high words of each lane's bits.
     #[inline(always)]
     pub(crate) fn words(self) -> (U32<L>, U32<L>) {
-        let (lo, hi): (u32x16<L::Isa>, u32x16<L::Isa>) = (self.lo.bitcast(), self.hi.bitcast());
-        let (even, odd) = lo.deinterleave(hi);
-        (U32::new(self.l, even), U32::new(self.l, odd))
+        self.l.op(
+            #[inline(always)]
+            || {
+                let (lo, hi): (u32x16<L::Isa>, u32x16<L::Isa>) =
+                    (self.lo.bitcast(), self.hi.bitcast());
+                let (even, odd) = lo.deinterleave(hi);
+                (U32::new(self.l, even), U32::new(self.l, odd))
+            },
+        )
     }
 
     #[inline(always)]
@@ -77,34 +91,47 @@ impl<L: Lanes> F64<L> {
 
     #[inline(always)]
     pub(crate) fn floor(self) -> Self {
-        Self {
-            lo: self.lo.floor(),
-            hi: self.hi.floor(),
-            l: self.l,
-        }
+        self.l.op(
+            #[inline(always)]
+            || Self {
+                lo: self.lo.floor(),
+                hi: self.hi.floor(),
+                l: self.l,
+            },
+        )
     }
 
     #[inline(always)]
     pub(crate) fn lt(self, o: Self) -> Mask<L> {
-        let lo = self.lo.simd_lt(o.lo).to_bitmask();
-        let hi = self.hi.simd_lt(o.hi).to_bitmask();
-        Mask::from_bits(self.l, (lo | hi << 8) as u16)
+        self.l.op(
+            #[inline(always)]
+            || {
+                let lo = self.lo.simd_lt(o.lo).to_bitmask();
+                let hi = self.hi.simd_lt(o.hi).to_bitmask();
+                Mask::from_bits(self.l, (lo | hi << 8) as u16)
+            },
+        )
     }
 
     /// Nearest integer, ties to even, of lanes limited to ±`limit` < 2³¹.
     #[inline(always)]
     pub(crate) fn round_to_i32(self, limit: f64) -> I32<L> {
-        let isa = self.l.isa();
-        let (max, min) = (f64x8::splat(isa, limit), f64x8::splat(isa, -limit));
-        let magic = f64x8::splat(isa, ROUND_MAGIC);
-        let lo = isa.select_f64x8(self.lo.simd_lt(max), self.lo, max);
-        let lo = isa.select_f64x8(lo.simd_gt(min), lo, min);
-        let hi = isa.select_f64x8(self.hi.simd_lt(max), self.hi, max);
-        let hi = isa.select_f64x8(hi.simd_gt(min), hi, min);
-        let (lo, hi): (i64x8<L::Isa>, i64x8<L::Isa>) =
-            ((lo + magic).bitcast(), (hi + magic).bitcast());
-        let v: i32x16<L::Isa> = isa.narrow_i64x8(lo, hi);
-        I32::new(self.l, v)
+        self.l.op(
+            #[inline(always)]
+            || {
+                let isa = self.l.isa();
+                let (max, min) = (f64x8::splat(isa, limit), f64x8::splat(isa, -limit));
+                let magic = f64x8::splat(isa, ROUND_MAGIC);
+                let lo = isa.select_f64x8(self.lo.simd_lt(max), self.lo, max);
+                let lo = isa.select_f64x8(lo.simd_gt(min), lo, min);
+                let hi = isa.select_f64x8(self.hi.simd_lt(max), self.hi, max);
+                let hi = isa.select_f64x8(hi.simd_gt(min), hi, min);
+                let (lo, hi): (i64x8<L::Isa>, i64x8<L::Isa>) =
+                    ((lo + magic).bitcast(), (hi + magic).bitcast());
+                let v: i32x16<L::Isa> = isa.narrow_i64x8(lo, hi);
+                I32::new(self.l, v)
+            },
+        )
     }
 }
 
@@ -114,11 +141,14 @@ macro_rules! op {
             type Output = Self;
             #[inline(always)]
             fn $method(self, o: Self) -> Self {
-                Self {
-                    lo: $trait::$method(self.lo, o.lo),
-                    hi: $trait::$method(self.hi, o.hi),
-                    l: self.l,
-                }
+                self.l.op(
+                    #[inline(always)]
+                    || Self {
+                        lo: $trait::$method(self.lo, o.lo),
+                        hi: $trait::$method(self.hi, o.hi),
+                        l: self.l,
+                    },
+                )
             }
         }
 

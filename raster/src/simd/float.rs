@@ -61,7 +61,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self {
-            v: self.v.abs(),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.abs(),
+            ),
             l: self.l,
         }
     }
@@ -70,7 +73,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self {
-            v: self.l.round(self.v.sqrt()),
+            v: self.l.op(
+                #[inline(always)]
+                || self.l.round(self.v.sqrt()),
+            ),
             l: self.l,
         }
     }
@@ -85,7 +91,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn floor(self) -> Self {
         Self {
-            v: self.v.floor(),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.floor(),
+            ),
             l: self.l,
         }
     }
@@ -94,7 +103,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn ceil(self) -> Self {
         Self {
-            v: self.v.ceil(),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.ceil(),
+            ),
             l: self.l,
         }
     }
@@ -103,7 +115,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn round_ties_even(self) -> Self {
         Self {
-            v: self.v.round_ties_even(),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.round_ties_even(),
+            ),
             l: self.l,
         }
     }
@@ -131,7 +146,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn lt(self, o: Self) -> Mask<L> {
         Mask {
-            v: self.v.simd_lt(o.v),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.simd_lt(o.v),
+            ),
             l: self.l,
         }
     }
@@ -140,7 +158,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn le(self, o: Self) -> Mask<L> {
         Mask {
-            v: self.v.simd_le(o.v),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.simd_le(o.v),
+            ),
             l: self.l,
         }
     }
@@ -149,7 +170,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn gt(self, o: Self) -> Mask<L> {
         Mask {
-            v: self.v.simd_gt(o.v),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.simd_gt(o.v),
+            ),
             l: self.l,
         }
     }
@@ -158,7 +182,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn ge(self, o: Self) -> Mask<L> {
         Mask {
-            v: self.v.simd_ge(o.v),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.simd_ge(o.v),
+            ),
             l: self.l,
         }
     }
@@ -167,7 +194,10 @@ impl<L: Lanes> F32<L> {
     #[inline(always)]
     pub fn eq(self, o: Self) -> Mask<L> {
         Mask {
-            v: self.v.simd_eq(o.v),
+            v: self.l.op(
+                #[inline(always)]
+                || self.v.simd_eq(o.v),
+            ),
             l: self.l,
         }
     }
@@ -181,7 +211,13 @@ impl<L: Lanes> F32<L> {
     /// Truncates towards zero; saturates; NaN becomes 0 (as Rust's `as`).
     #[inline(always)]
     pub fn to_i32(self) -> I32<L> {
-        I32::new(self.l, self.v.to_int_precise())
+        I32::new(
+            self.l,
+            self.l.op(
+                #[inline(always)]
+                || self.v.to_int_precise(),
+            ),
+        )
     }
 
     /// The bits of each float.
@@ -230,7 +266,10 @@ fn permute<L: Lanes>(x: F32<L>, order: [u8; LANES]) -> F32<L> {
     }
     let idx = fearless_simd::u8x64::from_slice(x.l.isa(), &bytes);
     F32 {
-        v: x.l.isa().swizzle_dyn_precise_f32x16(x.v, idx),
+        v: x.l.op(
+            #[inline(always)]
+            || x.l.isa().swizzle_dyn_precise_f32x16(x.v, idx),
+        ),
         l: x.l,
     }
 }
@@ -240,7 +279,10 @@ impl<L: Lanes> Mask<L> {
     #[inline(always)]
     pub fn select_f32(self, yes: F32<L>, no: F32<L>) -> F32<L> {
         F32 {
-            v: self.l.isa().select_f32x16(self.v, yes.v, no.v),
+            v: self.l.op(
+                #[inline(always)]
+                || self.l.isa().select_f32x16(self.v, yes.v, no.v),
+            ),
             l: self.l,
         }
     }
@@ -266,7 +308,10 @@ macro_rules! float_op {
             #[inline(always)]
             fn $method(self, o: Self) -> Self {
                 Self {
-                    v: self.l.round($trait::$method(self.v, o.v)),
+                    v: self.l.op(
+                        #[inline(always)]
+                        || self.l.round($trait::$method(self.v, o.v)),
+                    ),
                     l: self.l,
                 }
             }
@@ -291,7 +336,10 @@ impl<L: Lanes> Neg for F32<L> {
     #[inline(always)]
     fn neg(self) -> Self {
         Self {
-            v: -self.v,
+            v: self.l.op(
+                #[inline(always)]
+                || -self.v,
+            ),
             l: self.l,
         }
     }

@@ -50,55 +50,55 @@ macro_rules! int_lanes {
             /// The smaller of the two.
             #[inline(always)]
             pub fn min(self, o: Self) -> Self {
-                Self { v: self.v.min(o.v), l: self.l }
+                Self { v: self.l.op(#[inline(always)] || self.v.min(o.v)), l: self.l }
             }
 
             /// The larger of the two.
             #[inline(always)]
             pub fn max(self, o: Self) -> Self {
-                Self { v: self.v.max(o.v), l: self.l }
+                Self { v: self.l.op(#[inline(always)] || self.v.max(o.v)), l: self.l }
             }
 
             /// `self == o`.
             #[inline(always)]
             pub fn eq(self, o: Self) -> Mask<L> {
-                Mask { v: self.v.simd_eq(o.v), l: self.l }
+                Mask { v: self.l.op(#[inline(always)] || self.v.simd_eq(o.v)), l: self.l }
             }
 
             /// `self < o`.
             #[inline(always)]
             pub fn lt(self, o: Self) -> Mask<L> {
-                Mask { v: self.v.simd_lt(o.v), l: self.l }
+                Mask { v: self.l.op(#[inline(always)] || self.v.simd_lt(o.v)), l: self.l }
             }
 
             /// `self <= o`.
             #[inline(always)]
             pub fn le(self, o: Self) -> Mask<L> {
-                Mask { v: self.v.simd_le(o.v), l: self.l }
+                Mask { v: self.l.op(#[inline(always)] || self.v.simd_le(o.v)), l: self.l }
             }
 
             /// `self > o`.
             #[inline(always)]
             pub fn gt(self, o: Self) -> Mask<L> {
-                Mask { v: self.v.simd_gt(o.v), l: self.l }
+                Mask { v: self.l.op(#[inline(always)] || self.v.simd_gt(o.v)), l: self.l }
             }
 
             /// `self >= o`.
             #[inline(always)]
             pub fn ge(self, o: Self) -> Mask<L> {
-                Mask { v: self.v.simd_ge(o.v), l: self.l }
+                Mask { v: self.l.op(#[inline(always)] || self.v.simd_ge(o.v)), l: self.l }
             }
 
             /// Smallest of the sixteen lanes.
             #[inline(always)]
             pub fn reduce_min(self) -> $elem {
-                self.v.reduce_min()
+                self.l.op(#[inline(always)] || self.v.reduce_min())
             }
 
             /// Largest of the sixteen lanes.
             #[inline(always)]
             pub fn reduce_max(self) -> $elem {
-                self.v.reduce_max()
+                self.l.op(#[inline(always)] || self.v.reduce_max())
             }
         }
 
@@ -106,7 +106,7 @@ macro_rules! int_lanes {
             /// `if mask { yes } else { no }`, per lane.
             #[inline(always)]
             pub fn $select(self, yes: $name<L>, no: $name<L>) -> $name<L> {
-                $name { v: self.l.isa().$select_intrinsic(self.v, yes.v, no.v), l: self.l }
+                $name { v: self.l.op(#[inline(always)] || self.l.isa().$select_intrinsic(self.v, yes.v, no.v)), l: self.l }
             }
         }
 
@@ -121,7 +121,7 @@ macro_rules! int_lanes {
             type Output = Self;
             #[inline(always)]
             fn not(self) -> Self {
-                Self { v: !self.v, l: self.l }
+                Self { v: self.l.op(#[inline(always)] || !self.v), l: self.l }
             }
         }
 
@@ -129,7 +129,7 @@ macro_rules! int_lanes {
             type Output = Self;
             #[inline(always)]
             fn shl(self, n: u32) -> Self {
-                Self { v: self.v << n, l: self.l }
+                Self { v: self.l.op(#[inline(always)] || self.v << n), l: self.l }
             }
         }
 
@@ -137,7 +137,7 @@ macro_rules! int_lanes {
             type Output = Self;
             #[inline(always)]
             fn shr(self, n: u32) -> Self {
-                Self { v: self.v >> n, l: self.l }
+                Self { v: self.l.op(#[inline(always)] || self.v >> n), l: self.l }
             }
         }
     };
@@ -146,7 +146,7 @@ macro_rules! int_lanes {
             type Output = Self;
             #[inline(always)]
             fn $method(self, o: Self) -> Self {
-                Self { v: $trait::$method(self.v, o.v), l: self.l }
+                Self { v: self.l.op(#[inline(always)] || $trait::$method(self.v, o.v)), l: self.l }
             }
         }
     };
@@ -173,7 +173,13 @@ impl<L: Lanes> I32<L> {
     /// Nearest float, ties to even.
     #[inline(always)]
     pub fn to_f32(self) -> F32<L> {
-        F32::new(self.l, f32x16::float_from(self.v))
+        F32::new(
+            self.l,
+            self.l.op(
+                #[inline(always)]
+                || f32x16::float_from(self.v),
+            ),
+        )
     }
 
     /// The same bits, unsigned.
@@ -193,7 +199,10 @@ impl<L: Lanes> U32<L> {
     /// `(a0, b0, a1, b1, …, b7)` and `(a8, b8, …, b15)`.
     #[inline(always)]
     pub(crate) fn interleave(self, o: Self) -> (Self, Self) {
-        let (a, b) = self.v.interleave(o.v);
+        let (a, b) = self.l.op(
+            #[inline(always)]
+            || self.v.interleave(o.v),
+        );
         (Self::new(self.l, a), Self::new(self.l, b))
     }
 

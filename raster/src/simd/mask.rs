@@ -27,7 +27,10 @@ impl<L: Lanes> Mask<L> {
     #[inline(always)]
     pub fn from_bits(l: L, bits: u16) -> Self {
         Self {
-            v: mask32x16::from_bitmask(l.isa(), u64::from(bits)),
+            v: l.op(
+                #[inline(always)]
+                || mask32x16::from_bitmask(l.isa(), u64::from(bits)),
+            ),
             l,
         }
     }
@@ -35,7 +38,10 @@ impl<L: Lanes> Mask<L> {
     /// Bit `i` is lane `i`.
     #[inline(always)]
     pub fn bits(self) -> u16 {
-        self.v.to_bitmask() as u16
+        self.l.op(
+            #[inline(always)]
+            || self.v.to_bitmask() as u16,
+        )
     }
 
     /// Whether any lane is true.
@@ -56,7 +62,10 @@ impl<L: Lanes> BitAnd for Mask<L> {
     #[inline(always)]
     fn bitand(self, o: Self) -> Self {
         Self {
-            v: self.v & o.v,
+            v: self.l.op(
+                #[inline(always)]
+                || self.v & o.v,
+            ),
             l: self.l,
         }
     }
@@ -67,7 +76,10 @@ impl<L: Lanes> BitOr for Mask<L> {
     #[inline(always)]
     fn bitor(self, o: Self) -> Self {
         Self {
-            v: self.v | o.v,
+            v: self.l.op(
+                #[inline(always)]
+                || self.v | o.v,
+            ),
             l: self.l,
         }
     }
@@ -78,7 +90,10 @@ impl<L: Lanes> BitXor for Mask<L> {
     #[inline(always)]
     fn bitxor(self, o: Self) -> Self {
         Self {
-            v: self.v ^ o.v,
+            v: self.l.op(
+                #[inline(always)]
+                || self.v ^ o.v,
+            ),
             l: self.l,
         }
     }
@@ -89,7 +104,10 @@ impl<L: Lanes> Not for Mask<L> {
     #[inline(always)]
     fn not(self) -> Self {
         Self {
-            v: !self.v,
+            v: self.l.op(
+                #[inline(always)]
+                || !self.v,
+            ),
             l: self.l,
         }
     }

@@ -51,6 +51,15 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         self.isa().vectorize(f)
     }
 
+    /// One operation on lanes. The scalar level has it as a function: a hundred
+    /// instructions at each place where it is used would be most of the code, and of
+    /// the time it takes to compile.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn op<T>(self, f: impl FnOnce() -> T) -> T {
+        f()
+    }
+
     /// What every float operation's result passes through; the identity for
     /// full precision.
     #[inline(always)]
@@ -97,6 +106,11 @@ impl Lanes for fearless_simd::Fallback {
             f()
         }
         call(f)
+    }
+
+    #[inline(always)]
+    fn op<T>(self, f: impl FnOnce() -> T) -> T {
+        self.apart(f)
     }
 }
 

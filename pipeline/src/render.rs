@@ -227,7 +227,7 @@ fn event_warnings(report: &SubmitReport) -> Vec<Warning> {
         (
             "coverage-saturated",
             saturated(true),
-            "channels of coverage buffers saturated: more wedges overlap than carry bits hold; split the light or use soft-shadow-volumes with buffer=r32f",
+            "channels of coverage buffers saturated: more overlaps there than they hold; split the light or use soft-shadow-volumes with buffer=r32f",
         ),
         (
             "blend-saturated",

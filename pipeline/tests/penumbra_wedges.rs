@@ -139,7 +139,7 @@ fn every_scene_gives_visibility_within_bounds() {
             assert!(!codes.contains(&"nan"), "{}: {codes:?}", entry.name);
             // 300 nested umbrae are more than the buffer holds.
             let nested = entry.name.contains("nested") || entry.name == "adversarial";
-            let full = codes.contains(&"blend-saturated");
+            let full = codes.iter().any(|c| c.ends_with("-saturated"));
             assert!(nested || !full, "{}: {codes:?}", entry.name);
             assert!(full || !entry.name.contains("nested"), "{codes:?}");
         }

@@ -50,61 +50,84 @@ pub(super) fn count(counter: &mut u64, mask: u64) {
     }
 }
 
+/// 4×4 blocks that a triangle may cover.
+pub(super) struct Group<'a> {
+    /// Indices of the blocks in the tile's slices; of those of `alive`.
+    pub(super) slots: &'a [i32; LANES],
+    /// Blocks that may have covered pixels.
+    pub(super) alive: u16,
+    /// Those of which all pixels are covered.
+    pub(super) full: u16,
+    /// What zmin/zmax say.
+    pub(super) decided: Decisions,
+}
+
 /// zmin and zmax of the group's blocks of `alive`, and what they decide.
 #[inline(always)]
 pub(super) fn ask_group<L: Lanes, const D24: bool>(
     l: L,
     env: &mut Env<'_, '_>,
-    first: usize,
+    slots: &[i32; LANES],
+    aligned: bool,
     alive: u16,
     depth: &GroupDepth<L, D24>,
 ) -> Decisions {
-    let [mut min, mut max] = load_group(l, env, first);
+    let [mut min, mut max] = load_group(l, env, slots, aligned, alive);
     let stale = min.gt(max).bits() & alive;
     if stale != 0 {
         outlined(
             l,
             #[inline(always)]
-            || refresh(l, env, first, stale),
+            || refresh(l, env, slots, stale),
         );
-        [min, max] = load_group(l, env, first);
+        [min, max] = load_group(l, env, slots, aligned, alive);
     }
     depth::decide_group(env.config.compare, depth.span(), [min, max])
 }
 
 #[inline(always)]
-fn load_group<L: Lanes>(l: L, env: &Env<'_, '_>, first: usize) -> [I32<L>; 2] {
+fn load_group<L: Lanes>(
+    l: L,
+    env: &Env<'_, '_>,
+    slots: &[i32; LANES],
+    aligned: bool,
+    alive: u16,
+) -> [I32<L>; 2] {
     let d = env
         .target
         .depth
         .as_ref()
         .expect("zmin/zmax only with depth");
-    match (
-        d.hiz_min.get(first..first + LANES),
-        d.hiz_max.get(first..first + LANES),
-    ) {
-        (Some(min), Some(max)) => [
+    let first = slots[0] as usize;
+    if aligned
+        && let (Some(min), Some(max)) = (
+            d.hiz_min.get(first..first + LANES),
+            d.hiz_max.get(first..first + LANES),
+        )
+    {
+        return [
             I32::from_array(l, min.try_into().expect("16 entries")),
             I32::from_array(l, max.try_into().expect("16 entries")),
-        ],
-        _ => {
-            // A tile or image of fewer than 16 blocks.
-            let (mut min, mut max) = ([0; LANES], [0; LANES]);
-            let n = d.hiz_min.len() - first;
-            min[..n].copy_from_slice(&d.hiz_min[first..]);
-            max[..n].copy_from_slice(&d.hiz_max[first..]);
-            [I32::from_array(l, &min), I32::from_array(l, &max)]
-        }
+        ];
     }
+    let (mut min, mut max) = ([0; LANES], [0; LANES]);
+    let mut left = alive;
+    while left != 0 {
+        let i = left.trailing_zeros() as usize;
+        left &= left - 1;
+        let slot = slots[i] as usize;
+        (min[i], max[i]) = (d.hiz_min[slot], d.hiz_max[slot]);
+    }
+    [I32::from_array(l, &min), I32::from_array(l, &max)]
 }
 
 /// Finds zmin and zmax of the blocks of `stale` again.
 #[inline(always)]
-fn refresh<L: Lanes>(l: L, env: &mut Env<'_, '_>, first: usize, stale: u16) {
+fn refresh<L: Lanes>(l: L, env: &mut Env<'_, '_>, slots: &[i32; LANES], stale: u16) {
     let (x, y) = (env.target.x, env.target.y);
     let mut left = stale;
     while left != 0 {
-        let index = first + left.trailing_zeros() as usize;
+        let index = slots[left.trailing_zeros() as usize] as usize;
         left &= left - 1;
         let (bx, by) = crate::texture::layout::unmorton(index);
         let inside = env.target.inside(x + 8 * bx, y + 8 * by);
@@ -117,30 +140,40 @@ fn refresh<L: Lanes>(l: L, env: &mut Env<'_, '_>, first: usize, stale: u16) {
     }
 }
 
-/// Runs those whole blocks of a group that need no look at their pixels, and
-/// gives them: thrown away by zmin/zmax, or decided with at most one stencil
-/// count to add.
+/// Runs those blocks of a group whose depths nobody needs to look at, and gives
+/// them: thrown away by zmin/zmax, or decided with at most one stencil count to
+/// add. `mask` gives the covered pixels of a block.
 #[inline(always)]
 pub(super) fn run_group<L: Lanes>(
     l: L,
     env: &mut Env<'_, '_>,
     face: &StencilFace,
-    first: usize,
-    full: u16,
-    decided: &Decisions,
+    group: &Group<'_>,
+    mask: impl Fn(usize) -> u64,
 ) -> u16 {
     let config = env.config;
     let c = &mut *env.counters;
+    let &Group {
+        alive,
+        full,
+        decided,
+        ..
+    } = group;
     let mut done = 0;
     if config.hiz && !face.acts_on_depth_failure() {
-        done = full & decided.fail;
-        if COUNT {
-            let n = u64::from(done.count_ones());
-            c.fragments.generated += 64 * n;
-            c.fragments.hiz_killed += 64 * n;
-            c.tiles.tested += n;
-            c.tiles.culled += n;
-            c.accesses.hiz_read += n;
+        done = alive & decided.fail;
+        if COUNT && done != 0 {
+            let (mut blocks, mut pixels) = whole(done & full);
+            each_block(
+                done & !full,
+                #[inline(always)]
+                |i| tally(&mut blocks, &mut pixels, mask(i)),
+            );
+            c.fragments.generated += pixels;
+            c.fragments.hiz_killed += pixels;
+            c.tiles.tested += blocks;
+            c.tiles.culled += blocks;
+            c.accesses.hiz_read += blocks;
         }
     }
     if config.shader.is_some() || config.depth_write || !config.attached {
@@ -150,44 +183,90 @@ pub(super) fn run_group<L: Lanes>(
         return done;
     };
     let (pass, fail) = match config.compare {
-        CompareFunction::Always => (full, 0),
-        CompareFunction::Never => (0, full),
-        _ => (full & decided.pass, full & decided.fail & !done),
+        CompareFunction::Always => (alive, 0),
+        CompareFunction::Never => (0, alive),
+        _ => (alive & decided.pass, alive & decided.fail & !done),
     };
     let d = env.target.depth.as_mut().expect("attached");
-    for (blocks, step, failed) in [(pass, on_pass, false), (fail, on_fail, true)] {
-        if blocks == 0 {
+    for (run, step, failed) in [(pass, on_pass, false), (fail, on_fail, true)] {
+        if run == 0 {
             continue;
         }
+        let (mut blocks, mut pixels) = whole(run & full);
+        if step == 0 {
+            if COUNT {
+                each_block(
+                    run & !full,
+                    #[inline(always)]
+                    |i| tally(&mut blocks, &mut pixels, mask(i)),
+                );
+            }
+        } else {
+            each_block(
+                run & full,
+                #[inline(always)]
+                |i| stencil::add_to_all(l, &mut d.stencil[group.slots[i] as usize], step),
+            );
+            each_block(
+                run & !full,
+                #[inline(always)]
+                |i| {
+                    let m = mask(i);
+                    tally(&mut blocks, &mut pixels, m);
+                    stencil::add(l, &mut d.stencil[group.slots[i] as usize], m, step);
+                },
+            );
+        }
         if COUNT {
-            let n = u64::from(blocks.count_ones());
-            c.fragments.generated += 64 * n;
+            c.fragments.generated += pixels;
             *(if failed {
                 &mut c.fragments.depth_failed
             } else {
                 &mut c.fragments.written
-            }) += 64 * n;
+            }) += pixels;
             if config.hiz {
-                c.tiles.tested += n;
-                c.tiles.accepted += n;
-                c.accesses.hiz_read += n;
+                c.tiles.tested += blocks;
+                c.tiles.accepted += blocks;
+                c.accesses.hiz_read += blocks;
             }
             if step != 0 {
-                c.accesses.stencil_read += 64 * n;
-                c.accesses.stencil_write += 64 * n;
+                c.accesses.stencil_read += pixels;
+                c.accesses.stencil_write += pixels;
             }
-        }
-        if step != 0 {
-            stencil::add_to_blocks(l, d.stencil, first, blocks, step);
         }
     }
     done | pass | fail
 }
 
+/// How many blocks and pixels.
+#[inline(always)]
+fn whole(blocks: u16) -> (u64, u64) {
+    let n = u64::from(blocks.count_ones());
+    (n, 64 * n)
+}
+
+/// Counts a block of which `mask` is covered, which may be nothing.
+#[inline(always)]
+fn tally(blocks: &mut u64, pixels: &mut u64, mask: u64) {
+    if COUNT {
+        *blocks += u64::from(mask != 0);
+        *pixels += u64::from(mask.count_ones());
+    }
+}
+
+#[inline(always)]
+fn each_block(which: u16, mut f: impl FnMut(usize)) {
+    let mut left = which;
+    while left != 0 {
+        f(left.trailing_zeros() as usize);
+        left &= left - 1;
+    }
+}
+
 /// What is done with the covered pixels of a block.
 pub(super) trait BlockStage {
-    /// [`run_group`] may take whole blocks away.
-    const WHOLE_GROUPS: bool;
+    /// [`run_group`] may take blocks away.
+    const DECIDED_GROUPS: bool;
 
     /// Runs the pixels of `covered` of one block; `decision` is what a group's
     /// zmin/zmax have said, if they were asked.
@@ -206,7 +285,7 @@ pub(super) trait BlockStage {
 pub(super) struct General;
 
 impl BlockStage for General {
-    const WHOLE_GROUPS: bool = false;
+    const DECIDED_GROUPS: bool = false;
 
     #[inline(always)]
     fn run<L: Lanes, const D24: bool>(

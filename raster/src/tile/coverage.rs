@@ -1,12 +1,12 @@
 //! Which 8×8 blocks of a tile a triangle touches, and which pixels of them.
 //!
-//! Large triangles are classified 16 blocks at a time, in groups of 4×4 blocks
-//! that are neighbours in memory (Morton order), so that zmin/zmax of a group are
-//! two vector loads. Blocks that are thrown away, or whose depth test is decided
-//! and whose only effect is one stencil operation, never leave the group's loop.
-//! Small triangles bring their pixels with them.
+//! Large triangles are classified 16 blocks at a time, in groups of 4×4 blocks.
+//! Groups that start at a multiple of 4 are neighbours in memory (Morton order),
+//! so that their zmin/zmax are two vector loads. Blocks that are thrown away, or
+//! whose depth test is decided and whose only effect is one stencil operation,
+//! never leave the group's loop. Small triangles bring their pixels with them.
 
-use super::block::{self, BlockStage, Env, General, Place};
+use super::block::{self, BlockStage, Env, General, Group, Place};
 use super::depth::{Decision, Decisions, DepthBlock, GroupDepth};
 use super::target::rect_mask;
 
@@ -115,18 +115,18 @@ impl TileEdges {
     /// Smallest and largest value of edge `k` over a square of `n` pixels,
     /// relative to its origin.
     #[inline(always)]
-    fn span(&self, k: usize, n: i32) -> (i32, i32) {
+    fn span(&self, k: usize, n: i32) -> [i32; 2] {
         let (a, b) = (self.dx[k] * (n - 1), -self.dy[k] * (n - 1));
-        (a.min(0) + b.min(0), a.max(0) + b.max(0))
+        [a.min(0) + b.min(0), a.max(0) + b.max(0)]
     }
 }
 
 /// The edges on lanes, found once a triangle and tile.
 struct EdgeLanes<L: Lanes> {
-    /// Over the 16 blocks of the group at block (0, 0): smallest value in each.
-    low: [I32<L>; 3],
-    /// From smallest to largest.
-    rise: [i32; 3],
+    /// At the origins of the 16 blocks of the group at block (0, 0).
+    origins: [I32<L>; 3],
+    /// From a block's origin to its smallest and largest value.
+    span: [[i32; 2]; 3],
     /// Over the first packet of a block, relative to its origin.
     packet: [I32<L>; 3],
     /// From packet to packet.
@@ -143,42 +143,50 @@ impl<L: Lanes> EdgeLanes<L> {
         let (ix, iy) = (I32::from_array(l, &IX), I32::from_array(l, &IY));
         let zero = I32::splat(l, 0);
         let mut lanes = Self {
-            low: [zero; 3],
-            rise: [0; 3],
+            origins: [zero; 3],
+            span: [[0; 2]; 3],
             packet: [zero; 3],
             step: [zero; 3],
         };
         for k in 0..3 {
             let (dx, dy) = (I32::splat(l, e.dx[k]), I32::splat(l, e.dy[k]));
-            let (lo, hi) = e.span(k, 8);
-            lanes.low[k] = (gy * dx - gx * dy) + I32::splat(l, e.e[k] + lo);
-            lanes.rise[k] = hi - lo;
+            lanes.origins[k] = (gy * dx - gx * dy) + I32::splat(l, e.e[k]);
+            lanes.span[k] = e.span(k, 8);
             lanes.packet[k] = iy * dx - ix * dy;
             lanes.step[k] = dx + dx;
         }
         lanes
     }
 
-    /// Blocks of the group at (gx, gy) that may hold covered pixels, and those that
-    /// hold nothing else.
+    /// Edge values at the origins of the blocks of the group at (gx, gy).
     #[inline(always)]
-    fn classify(&self, l: L, e: &TileEdges, [gx, gy]: [i32; 2]) -> [u16; 2] {
+    fn origins(&self, l: L, e: &TileEdges, [gx, gy]: [i32; 2]) -> [I32<L>; 3] {
+        each3(
+            #[inline(always)]
+            |k| self.origins[k] + I32::splat(l, 8 * (e.dx[k] * gy - e.dy[k] * gx)),
+        )
+    }
+
+    /// Blocks with these origins that may hold covered pixels, and those that hold
+    /// nothing else.
+    #[inline(always)]
+    fn classify(&self, l: L, origins: &[I32<L>; 3]) -> [u16; 2] {
         let zero = I32::splat(l, 0);
         let (mut low, mut high) = (zero, zero);
         for k in 0..3 {
-            let v = self.low[k] + I32::splat(l, 8 * (e.dx[k] * gy - e.dy[k] * gx));
-            low = low | v;
-            high = high | (v + I32::splat(l, self.rise[k]));
+            let [lo, hi] = self.span[k];
+            low = low | (origins[k] + I32::splat(l, lo));
+            high = high | (origins[k] + I32::splat(l, hi));
         }
         [high.ge(zero).bits(), low.ge(zero).bits()]
     }
 
-    /// Pixels of block (bx, by) inside all three edges.
+    /// Pixels inside all three edges of the block with this origin.
     #[inline(always)]
-    fn mask(&self, l: L, e: &TileEdges, bx: i32, by: i32) -> u64 {
+    fn mask(&self, l: L, origin: [i32; 3]) -> u64 {
         let mut v: [I32<L>; 3] = each3(
             #[inline(always)]
-            |k| self.packet[k] + I32::splat(l, e.at_block(k, bx, by)),
+            |k| self.packet[k] + I32::splat(l, origin[k]),
         );
         let zero = I32::splat(l, 0);
         let mut m = 0;
@@ -258,7 +266,11 @@ fn large<L: Lanes, S: BlockStage, const D24: bool>(
         // Groups know fixed-point depth only.
         for by in by0..=by1 {
             for bx in bx0..=bx1 {
-                let m = lanes.mask(l, &e, bx, by) & w.mask(bx, by);
+                let origin = each3(
+                    #[inline(always)]
+                    |k| e.at_block(k, bx, by),
+                );
+                let m = lanes.mask(l, origin) & w.mask(bx, by);
                 if m != 0 {
                     outlined(
                         l,
@@ -312,8 +324,49 @@ fn one_block<L: Lanes, S: BlockStage, const D24: bool>(
     S::run::<L, D24>(l, env, t, p, &plane, None, mask);
 }
 
-/// Classifies and runs the 4×4 blocks at (gx, gy). Where they are `aligned` to
-/// multiples of 4 they are neighbours in memory, and zmin/zmax are asked for all.
+/// Indices of blocks (bx, by) in the tile's slices: Morton order.
+#[inline(always)]
+fn slots<L: Lanes>(bx: I32<L>, by: I32<L>) -> [i32; LANES] {
+    (spread(bx) | (spread(by) << 1)).to_array()
+}
+
+/// Moves bits 0 to 3 to bits 0, 2, 4 and 6.
+#[inline(always)]
+fn spread<L: Lanes>(v: I32<L>) -> I32<L> {
+    let l = v.l;
+    let v = (v | (v << 2)) & I32::splat(l, 0x33);
+    (v | (v << 1)) & I32::splat(l, 0x55)
+}
+
+/// The covered pixels of the blocks of one group.
+struct GroupMasks<'a, L: Lanes> {
+    lanes: &'a EdgeLanes<L>,
+    window: &'a Window,
+    at: [i32; 2],
+    /// Edge values at the blocks' origins.
+    origins: [[i32; LANES]; 3],
+    /// Blocks that lie in the window.
+    unclipped: u16,
+}
+
+impl<L: Lanes> GroupMasks<'_, L> {
+    #[inline(always)]
+    fn of(&self, l: L, i: usize) -> u64 {
+        let inside = self.lanes.mask(
+            l,
+            [self.origins[0][i], self.origins[1][i], self.origins[2][i]],
+        );
+        if self.unclipped >> i & 1 != 0 {
+            inside
+        } else {
+            let [gx, gy] = self.at;
+            inside & self.window.mask(gx + GROUP_X[i], gy + GROUP_Y[i])
+        }
+    }
+}
+
+/// Classifies and runs the 4×4 blocks at (gx, gy), which are neighbours in memory
+/// where they are `aligned` to multiples of 4.
 #[inline(always)]
 #[allow(
     clippy::too_many_arguments,
@@ -335,7 +388,8 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
         & bx.le(I32::splat(l, bx1))
         & by.ge(I32::splat(l, by0))
         & by.le(I32::splat(l, by1));
-    let [touched, filled] = lanes.classify(l, e, [gx, gy]);
+    let origins = lanes.origins(l, e, [gx, gy]);
+    let [touched, filled] = lanes.classify(l, &origins);
     let alive = inside.bits() & touched;
     if alive == 0 {
         return;
@@ -345,23 +399,49 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
         & y.ge(I32::splat(l, w.y0))
         & x.le(I32::splat(l, w.x1 - 7))
         & y.le(I32::splat(l, w.y1 - 7));
-    let full = alive & filled & unclipped.bits();
+    let unclipped = unclipped.bits();
+    let full = alive & filled & unclipped;
 
-    let first = morton(gx as u32, gy as u32);
+    let slots = slots(bx, by);
     let depth = env.config.needs_depth.then(
         #[inline(always)]
         || GroupDepth::<L, D24>::new(l, t, env.target, [gx, gy], env.config.depth_range),
     );
     let mut decided = Decisions::default();
-    if aligned
-        && env.config.hiz
+    if env.config.hiz
         && let Some(d) = &depth
     {
-        decided = block::ask_group(l, env, first, alive, d);
+        decided = block::ask_group(l, env, &slots, aligned, alive, d);
     }
+    let masks = GroupMasks {
+        lanes,
+        window: w,
+        at: [gx, gy],
+        origins: each3(
+            #[inline(always)]
+            |k| origins[k].to_array(),
+        ),
+        unclipped,
+    };
     let mut left = alive;
-    if aligned && S::WHOLE_GROUPS && !t.is_cut_far() {
-        left &= !block::run_group(l, env, env.config.face(t), first, full, &decided);
+    if S::DECIDED_GROUPS && !t.is_special() {
+        let group = Group {
+            slots: &slots,
+            alive,
+            full,
+            decided,
+        };
+        left &= !block::run_group(
+            l,
+            env,
+            env.config.face(t),
+            &group,
+            #[inline(always)]
+            |i| masks.of(l, i),
+        );
+        if left == 0 {
+            return;
+        }
     }
     let bases = depth.map(
         #[inline(always)]
@@ -370,16 +450,14 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
     while left != 0 {
         let i = left.trailing_zeros() as usize;
         left &= left - 1;
-        let (bx, by) = (gx + GROUP_X[i], gy + GROUP_Y[i]);
         let m = if full >> i & 1 != 0 {
             u64::MAX
         } else {
-            let inside = outlined(
+            outlined(
                 l,
                 #[inline(always)]
-                || lanes.mask(l, e, bx, by),
-            );
-            inside & w.mask(bx, by)
+                || masks.of(l, i),
+            )
         };
         if m == 0 {
             continue;
@@ -388,10 +466,15 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
             Some(b) => DepthBlock::<D24>::with_base(t, b[i], env.config.depth_range),
             None => DepthBlock::UNUSED,
         };
-        let decision: Option<Decision> = (aligned && env.config.hiz).then(
+        let decision: Option<Decision> = env.config.hiz.then(
             #[inline(always)]
             || decided.of(i),
         );
-        S::run::<L, D24>(l, env, t, place(env, bx, by), &plane, decision, m);
+        let place = Place {
+            index: slots[i] as usize,
+            x: env.target.x + 8 * (gx + GROUP_X[i]) as u32,
+            y: env.target.y + 8 * (gy + GROUP_Y[i]) as u32,
+        };
+        S::run::<L, D24>(l, env, t, place, &plane, decision, m);
     }
 }

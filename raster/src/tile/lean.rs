@@ -17,7 +17,7 @@ use crate::texture::{Block, HIZ_STALE};
 pub(super) struct Lean<const SHADED: bool>;
 
 impl<const SHADED: bool> BlockStage for Lean<SHADED> {
-    const WHOLE_GROUPS: bool = true;
+    const DECIDED_GROUPS: bool = true;
 
     #[inline(always)]
     fn run<L: Lanes, const D24: bool>(

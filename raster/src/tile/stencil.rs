@@ -46,22 +46,10 @@ pub(super) fn add<L: Lanes>(l: L, block: &mut Block<u8>, mask: u64, step: i8) {
         .store_slice(&mut block.0);
 }
 
-/// Adds `step` to every pixel of the blocks `first + i`, bit i of `which` set.
+/// Adds `step` to every pixel.
 #[inline(always)]
-pub(super) fn add_to_blocks<L: Lanes>(
-    l: L,
-    blocks: &mut [Block<u8>],
-    first: usize,
-    which: u16,
-    step: i8,
-) {
-    let step = u8x64::splat(l.isa(), step as u8);
-    let mut left = which;
-    while left != 0 {
-        let b = &mut blocks[first + left.trailing_zeros() as usize];
-        left &= left - 1;
-        (load(l, b) + step).store_slice(&mut b.0);
-    }
+pub(super) fn add_to_all<L: Lanes>(l: L, block: &mut Block<u8>, step: i8) {
+    (load(l, block) + u8x64::splat(l.isa(), step as u8)).store_slice(&mut block.0);
 }
 
 /// Applies `op` to the pixels of `mask`; gives those whose byte stayed the same.

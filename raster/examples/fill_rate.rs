@@ -47,6 +47,10 @@ impl VertexShader for Layers {
 struct Constant([f32; 4]);
 
 impl FragmentShader for Constant {
+    fn constant(&self) -> Option<[f32; 4]> {
+        Some(self.0)
+    }
+
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let [r, g, b, a] = self.0;

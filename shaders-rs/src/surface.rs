@@ -19,6 +19,10 @@ use crate::vector::V3;
 pub struct Constant(pub [f32; 4]);
 
 impl FragmentShader for Constant {
+    fn constant(&self) -> Option<[f32; 4]> {
+        Some(self.0)
+    }
+
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let color = each4(

@@ -5,7 +5,7 @@ use crate::counters::AccessSizes;
 use crate::format::{self, Format};
 use crate::geometry::{DepthEncoding, GeometryState, ViewportTransform};
 use crate::gpu::Gpu;
-use crate::shader::Interpolation;
+use crate::shader::{ErasedFragmentShader, FragmentOutputs, Interpolation};
 use crate::state::{CompareFunction, DepthStencilState, Viewport};
 use crate::texture::Texture;
 use crate::tile::{DrawConfig, StencilFace, TargetConfig};
@@ -129,6 +129,9 @@ fn draw_config<'a>(
     let ends = [viewport.min_depth, viewport.max_depth].map(|v| encode_depth(encoding, v));
     let face = |f, reference| StencilFace::new(f, reference, attached);
     let shader = draw.pipeline.fragment.as_ref().map(|f| &*f.0);
+    let constant = shader.and_then(ErasedFragmentShader::constant).filter(|_| {
+        target.sizes.color.iter().flatten().count() == 1 && outputs == FragmentOutputs::default()
+    });
     let mut config = DrawConfig {
         encoding,
         rect: geometry.rect,
@@ -148,14 +151,17 @@ fn draw_config<'a>(
         hiz: gpu.config.skip && depth_tested && ds.depth.bounds.is_none() && !outputs.depth,
         lean: false,
         plain: draw.pipeline.primitive.clip_planes.is_empty() && ds.depth.bounds.is_none(),
-        needs_depth: depth_tested || (attached && ds.depth.write) || shader.is_some(),
+        needs_depth: depth_tested
+            || (attached && ds.depth.write)
+            || (shader.is_some() && constant.is_none()),
         stencil: [
             face(ds.stencil.front, draw.stencil_reference[0]),
             face(ds.stencil.back, draw.stencil_reference[1]),
         ],
-        targets: color_targets(target, draw),
+        targets: color_targets(target, draw, constant),
         blend_constant: draw.blend_constant,
         shader,
+        constant,
         discards: outputs.discards,
         writes_shader_depth: outputs.depth,
         varyings: geometry.varyings,
@@ -179,10 +185,13 @@ fn texture(gpu: &Gpu, id: u32) -> &Texture {
     &gpu.textures[id as usize]
 }
 
-fn color_targets(target: &Target, draw: &Draw) -> Vec<TargetConfig> {
+fn color_targets(target: &Target, draw: &Draw, constant: Option<[f32; 4]>) -> Vec<TargetConfig> {
     let formats = target.sizes.color.iter().flatten();
     formats
         .zip(&draw.pipeline.color_targets)
-        .map(|(&format, t)| TargetConfig::new(format, t.blend, t.write_mask))
+        .map(|(&format, t)| {
+            let target = TargetConfig::new(format, t.blend, t.write_mask);
+            constant.map_or(target, |color| target.with_constant(color))
+        })
         .collect()
 }

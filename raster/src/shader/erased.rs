@@ -19,6 +19,7 @@ pub(crate) trait ErasedVertexShader: Send + Sync {
 
 pub(crate) trait ErasedFragmentShader: Send + Sync {
     fn outputs(&self) -> FragmentOutputs;
+    fn constant(&self) -> Option<[f32; 4]>;
     fn shade_block(&self, level: SimdLevel, block: &mut ShadeBlock<'_>);
 }
 
@@ -40,6 +41,10 @@ impl<V: VertexShader> ErasedVertexShader for V {
 impl<F: FragmentShader> ErasedFragmentShader for F {
     fn outputs(&self) -> FragmentOutputs {
         FragmentShader::outputs(self)
+    }
+
+    fn constant(&self) -> Option<[f32; 4]> {
+        FragmentShader::constant(self)
     }
 
     fn shade_block(&self, level: SimdLevel, block: &mut ShadeBlock<'_>) {

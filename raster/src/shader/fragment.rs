@@ -23,6 +23,13 @@ pub trait FragmentShader: Send + Sync {
         FragmentOutputs::default()
     }
 
+    /// The colour of attachment 0, where every fragment has the same and nothing else
+    /// is written: the shader then need not be run, though its invocations count.
+    /// Must be what [`Self::shade`] sets.
+    fn constant(&self) -> Option<[f32; 4]> {
+        None
+    }
+
     /// Shades a packet of fragments. Mark it `#[inline(always)]`, and everything
     /// it calls.
     fn shade<L: Lanes>(&self, l: L, fragment: &mut Fragment<'_, L>);

@@ -127,6 +127,20 @@ pub struct BlendState {
 }
 
 impl BlendState {
+    /// The operation, where it is the same for all channels and needs no factors.
+    pub(crate) fn bytewise(&self) -> Option<BlendOperation> {
+        let one = |c: &BlendComponent| {
+            c.src_factor == BlendFactor::One && c.dst_factor == BlendFactor::One
+        };
+        let free = matches!(
+            self.color.operation,
+            BlendOperation::Min | BlendOperation::Max
+        );
+        (self.color.operation == self.alpha.operation
+            && (free || (one(&self.color) && one(&self.alpha))))
+        .then_some(self.color.operation)
+    }
+
     /// dst + src, saturating.
     pub const ADDITIVE: Self = Self {
         color: BlendComponent::ADD,

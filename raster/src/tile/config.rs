@@ -1,7 +1,7 @@
 //! A draw's state in the form in which the tile stage uses it.
 
 use crate::command::BoundTexture;
-use crate::format::Format;
+use crate::format::{Format, unorm8_from_f32};
 use crate::geometry::{DepthEncoding, Triangle};
 use crate::shader::ErasedFragmentShader;
 use crate::state::{BlendState, ColorWrites, CompareFunction, StencilFaceState, StencilOperation};
@@ -71,6 +71,9 @@ pub(crate) struct TargetConfig {
     pub(crate) mask: ColorWrites,
     /// The destination is read.
     pub(crate) reads: bool,
+    /// The source as a word of RGBA8, where it is the same everywhere, fits the
+    /// format, and is stored or blended byte by byte.
+    pub(crate) word: Option<u32>,
 }
 
 impl TargetConfig {
@@ -91,6 +94,19 @@ impl TargetConfig {
             blend,
             mask,
             reads: mask.0 != 0 && (blends || mask.0 != all),
+            word: None,
+        }
+    }
+
+    /// For fragments of one colour.
+    pub(crate) fn with_constant(self, color: [f32; 4]) -> Self {
+        let bytewise = self.format == Format::Rgba8Unorm
+            && self.mask == ColorWrites::ALL
+            && self.blend.is_none_or(|b| b.bytewise().is_some());
+        let fits = color.iter().all(|c| (0.0..=1.0).contains(c));
+        Self {
+            word: (bytewise && fits).then(|| u32::from_le_bytes(color.map(unorm8_from_f32))),
+            ..self
         }
     }
 }
@@ -124,6 +140,8 @@ pub(crate) struct DrawConfig<'a> {
     pub(crate) targets: Vec<TargetConfig>,
     pub(crate) blend_constant: [f32; 4],
     pub(crate) shader: Option<&'a dyn ErasedFragmentShader>,
+    /// What the shader gives everywhere, so that it is not run.
+    pub(crate) constant: Option<[f32; 4]>,
     pub(crate) discards: bool,
     pub(crate) writes_shader_depth: bool,
     /// How many varyings, and which are divided by w or flat.

@@ -3,7 +3,8 @@
 use super::target::TileTarget;
 use crate::format::D24_MAX;
 use crate::geometry::{D24_BASE_LIMIT, D24_FRACTION, D24_SCALE, Triangle};
-use crate::simd::{F32, F64, I32, LANES, Lanes, round_to_i32};
+use crate::shader::PACKETS;
+use crate::simd::{F32, F64, I32, LANES, Lanes, each4, round_to_i32};
 use crate::state::CompareFunction;
 use crate::texture::Block;
 
@@ -218,6 +219,30 @@ impl<const D24: bool> DepthBlock<D24> {
         }
     }
 
+    /// Stored depths of all packets.
+    #[inline(always)]
+    pub(super) fn packets<L: Lanes>(&self, l: L) -> [I32<L>; PACKETS] {
+        if !D24 || self.steep.is_some() {
+            return each4(
+                #[inline(always)]
+                |k| self.packet(l, k),
+            );
+        }
+        // Integers wrap: sums are the same in any order.
+        let [sx, sy] = self.slope;
+        let across = I32::from_array(l, &IX) * I32::splat(l, sx);
+        let first = (I32::from_array(l, &IY) * I32::splat(l, sy) + across)
+            + I32::splat(l, self.base + D24_HALF);
+        let [lo, hi] = self.range;
+        each4(
+            #[inline(always)]
+            |k| {
+                let z = (first + I32::splat(l, 2 * k as i32 * sy)) >> D24_FRACTION;
+                z.max(I32::splat(l, lo)).min(I32::splat(l, hi))
+            },
+        )
+    }
+
     /// Pixels of the block at (x, y) whose depth, before bias and clamping, is not
     /// beyond the far end of the viewport's range (rules §4).
     #[inline(always)]
@@ -420,9 +445,6 @@ pub(super) fn store<L: Lanes>(l: L, b: &mut Block<u32>, k: usize, z: I32<L>, mas
     let words: &mut [u32; LANES] = (&mut b.0[16 * k..16 * k + 16])
         .try_into()
         .expect("16 of 64");
-    if mask == u16::MAX {
-        return z.to_u32().store(words);
-    }
     let old = crate::simd::U32::from_array(l, words);
     crate::simd::Mask::from_bits(l, mask)
         .select_u32(z.to_u32(), old)

@@ -9,7 +9,7 @@ use super::target::DepthTile;
 use super::{COUNT, TileStageCounters, output, stencil};
 use crate::geometry::Triangle;
 use crate::shader::PACKETS;
-use crate::simd::{Lanes, outlined};
+use crate::simd::{I32, Lanes, outlined};
 use crate::state::CompareFunction;
 use crate::texture::{Block, HIZ_STALE};
 
@@ -80,17 +80,39 @@ fn tests<L: Lanes, const D24: bool>(
     } else {
         covered
     };
-    let passed = match (config.compare, decision) {
-        (CompareFunction::Always, _) | (_, Decision::Pass) => reached,
-        (CompareFunction::Never, _) | (_, Decision::Fail) => 0,
-        _ => {
+    let decided = match (config.compare, decision) {
+        (CompareFunction::Always, _) | (_, Decision::Pass) => Some(reached),
+        (CompareFunction::Never, _) | (_, Decision::Fail) => Some(0),
+        _ => None,
+    };
+    let passed = match decided {
+        Some(passed) => {
+            if config.depth_write && passed != 0 {
+                outlined(
+                    l,
+                    #[inline(always)]
+                    || {
+                        let z = plane.packets(l);
+                        write_depth(l, config, c, d, place.index, &z, plane, inside, passed);
+                    },
+                );
+            }
+            passed
+        }
+        None => {
             count(&mut c.accesses.z_read, reached);
-            let stored = &d.depth[place.index];
             outlined(
                 l,
                 #[inline(always)]
-                || compare(l, config.compare, plane, stored),
-            ) & reached
+                || {
+                    let z = plane.packets(l);
+                    let passed = compare(l, config.compare, &z, &d.depth[place.index]) & reached;
+                    if config.depth_write && passed != 0 {
+                        write_depth(l, config, c, d, place.index, &z, plane, inside, passed);
+                    }
+                    passed
+                },
+            )
         }
     };
     count(&mut c.fragments.depth_failed, reached & !passed);
@@ -103,13 +125,6 @@ fn tests<L: Lanes, const D24: bool>(
             on_fail,
         );
         add(l, c, &mut d.stencil[place.index], passed, on_pass);
-    }
-    if config.depth_write && passed != 0 {
-        outlined(
-            l,
-            #[inline(always)]
-            || write_depth(l, config, c, d, place.index, plane, inside, passed),
-        );
     }
     passed
 }
@@ -151,25 +166,20 @@ fn add<L: Lanes>(l: L, c: &mut TileStageCounters, stored: &mut Block<u8>, mask: 
 
 /// All 64 pixels, covered or not: a branch on which packets matter costs more.
 #[inline(always)]
-fn compare<L: Lanes, const D24: bool>(
-    l: L,
-    f: CompareFunction,
-    plane: &DepthBlock<D24>,
-    stored: &Block<u32>,
-) -> u64 {
+fn compare<L: Lanes>(l: L, f: CompareFunction, z: &[I32<L>; PACKETS], stored: &Block<u32>) -> u64 {
     match f {
         CompareFunction::Less => packets(
             #[inline(always)]
-            |k| plane.packet(l, k).lt(depth::load(l, stored, k)).bits(),
+            |k| z[k].lt(depth::load(l, stored, k)).bits(),
         ),
         CompareFunction::LessEqual => packets(
             #[inline(always)]
-            |k| plane.packet(l, k).le(depth::load(l, stored, k)).bits(),
+            |k| z[k].le(depth::load(l, stored, k)).bits(),
         ),
         _ => {
             let (mut less, mut equal) = (0, 0);
-            for k in 0..PACKETS {
-                let (z, s) = (plane.packet(l, k), depth::load(l, stored, k));
+            for (k, z) in z.iter().enumerate() {
+                let s = depth::load(l, stored, k);
                 less |= u64::from(z.lt(s).bits()) << (16 * k);
                 equal |= u64::from(z.eq(s).bits()) << (16 * k);
             }
@@ -190,6 +200,7 @@ fn write_depth<L: Lanes, const D24: bool>(
     c: &mut TileStageCounters,
     d: &mut DepthTile<'_>,
     index: usize,
+    z: &[I32<L>; PACKETS],
     plane: &DepthBlock<D24>,
     inside: u64,
     mask: u64,
@@ -207,13 +218,12 @@ fn write_depth<L: Lanes, const D24: bool>(
         #[inline(always)]
         |k| {
             let m = (mask >> (16 * k)) as u16;
-            let z = plane.packet(l, k);
             let same = if differs || !COUNT {
                 0
             } else {
-                z.eq(depth::load(l, stored, k)).bits() & m
+                z[k].eq(depth::load(l, stored, k)).bits() & m
             };
-            depth::store(l, stored, k, z, m);
+            depth::store(l, stored, k, z[k], m);
             same
         },
     );

@@ -28,7 +28,7 @@ use crate::counters::{Accesses, Counters, EventCounters, FragmentCounters, TileC
 use crate::geometry::{Chunk, DepthEncoding, ShadedVertices};
 use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput, ShaderEvents};
-use crate::simd::{Lanes, SimdLevel, outlined, with_lanes};
+use crate::simd::{F32, Lanes, SimdLevel, outlined, with_lanes};
 
 /// Whether counting is compiled in; the `uncounted` feature exists to measure
 /// what it costs.
@@ -128,6 +128,9 @@ pub(crate) fn run_tile(
 #[inline(always)]
 fn run_bin<L: Lanes>(l: L, env: &mut block::Env<'_, '_>, bin: &[u32]) {
     let config = env.config;
+    if let Some(color) = config.constant {
+        fill_outputs(l, env.outputs, color);
+    }
     let lean = config.lean && env.accesses.is_none();
     match (lean, config.encoding, config.shader.is_some()) {
         (true, DepthEncoding::D24, false) => kernel::<L, Lean<false>, true>(l, env, bin),
@@ -136,6 +139,16 @@ fn run_bin<L: Lanes>(l: L, env: &mut block::Env<'_, '_>, bin: &[u32]) {
         (true, DepthEncoding::Float, true) => kernel::<L, Lean<true>, false>(l, env, bin),
         (false, DepthEncoding::D24, _) => kernel::<L, General, true>(l, env, bin),
         (false, DepthEncoding::Float, _) => kernel::<L, General, false>(l, env, bin),
+    }
+}
+
+/// What a shader of one colour gives in every packet.
+#[inline(always)]
+fn fill_outputs<L: Lanes>(l: L, outputs: &mut [PacketOutput; PACKETS], color: [f32; 4]) {
+    for out in outputs {
+        for (channel, c) in out.color[0].iter_mut().zip(color) {
+            F32::splat(l, c).store(channel);
+        }
     }
 }
 

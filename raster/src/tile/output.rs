@@ -58,6 +58,13 @@ impl<L: Lanes> Writer<'_, L> {
         live: u64,
     ) {
         let l = self.l;
+        if let (Some(word), ColorTile::B32(b)) = (self.target.word, &mut *tile) {
+            return outlined(
+                l,
+                #[inline(always)]
+                || self.constant_words(&mut b[block].0, word, live),
+            );
+        }
         match (self.target.format, tile) {
             (Format::Rgba8Unorm, ColorTile::B32(b)) => outlined(
                 l,
@@ -121,6 +128,20 @@ impl<L: Lanes> Writer<'_, L> {
                     );
                 },
             ),
+        }
+    }
+
+    /// All four packets: a branch on which are live costs more.
+    #[inline(always)]
+    fn constant_words(&mut self, block: &mut [u32; 64], word: u32, live: u64) {
+        let s = U32::splat(self.l, word);
+        let op = self.target.blend.as_ref().and_then(BlendState::bytewise);
+        for k in 0..PACKETS {
+            let (words, live) = (words(block, k), (live >> (16 * k)) as u16);
+            match op {
+                Some(op) => self.rgba8_plain(words, s, op, live),
+                None => self.store32(words, s, live),
+            }
         }
     }
 
@@ -221,7 +242,7 @@ impl<L: Lanes> Writer<'_, L> {
     fn rgba8(&mut self, words: &mut [u32; LANES], src: &Channels<F32<L>>, live: u16) {
         let l = self.l;
         if self.target.mask == ColorWrites::ALL {
-            let plain = self.target.blend.as_ref().map(plain_operation);
+            let plain = self.target.blend.as_ref().map(BlendState::bytewise);
             if plain != Some(None) {
                 let s = self.packed_bytes(src, live);
                 return match plain.flatten() {
@@ -507,16 +528,6 @@ fn spread(lanes: u16) -> u64 {
     v = (v | v << 6) & 0x0303_0303_0303_0303;
     v = (v | v << 3) & 0x1111_1111_1111_1111;
     v * 15
-}
-
-/// The operation, where it is the same for all channels and needs no factors.
-#[inline(always)]
-fn plain_operation(b: &BlendState) -> Option<BlendOperation> {
-    let one =
-        |c: &BlendComponent| c.src_factor == BlendFactor::One && c.dst_factor == BlendFactor::One;
-    let free = matches!(b.color.operation, BlendOperation::Min | BlendOperation::Max);
-    (b.color.operation == b.alpha.operation && (free || (one(&b.color) && one(&b.alpha))))
-        .then_some(b.color.operation)
 }
 
 #[inline(always)]

@@ -183,6 +183,9 @@ pub(super) fn run<L: Lanes, const D24: bool>(
     let Some(shader) = env.config.shader else {
         return 0;
     };
+    if env.config.constant.is_some() {
+        return 0;
+    }
     if env.config.varyings != 0 {
         if !env.varyings.ready {
             outlined(

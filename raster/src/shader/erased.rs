@@ -85,10 +85,12 @@ fn shade_batch<L: Lanes, V: VertexShader>(
 
 #[inline(always)]
 fn shade_block<L: Lanes, F: FragmentShader>(shader: &F, l: L, block: &mut ShadeBlock<'_>) {
+    let (attachments, writes_depth) = (block.attachments, block.writes_depth);
     for packet in 0..PACKETS {
         if (block.live >> (16 * packet)) as u16 != 0 {
             let mut f = Fragment::new(l, block, packet);
             shader.shade(l, &mut f);
+            f.finish(attachments, writes_depth);
         }
     }
 }

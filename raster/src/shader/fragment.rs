@@ -76,6 +76,9 @@ pub(crate) struct ShaderEvents {
     pub(crate) texels: [u64; MAX_TEXTURES],
 }
 
+/// In [`Fragment::set`].
+const DEPTH_SET: u32 = 1 << 31;
+
 /// One 8×8 block for a fragment shader.
 pub(crate) struct ShadeBlock<'a> {
     /// Top-left pixel.
@@ -92,6 +95,9 @@ pub(crate) struct ShadeBlock<'a> {
     pub(crate) primitive: u32,
     pub(crate) textures: &'a [BoundTexture<'a>],
     pub(crate) out: &'a mut [PacketOutput; PACKETS],
+    /// How many colour attachments there are.
+    pub(crate) attachments: usize,
+    pub(crate) writes_depth: bool,
     pub(crate) events: &'a mut ShaderEvents,
 }
 
@@ -109,6 +115,8 @@ pub struct Fragment<'a, L: Lanes> {
     pub(super) primitive: u32,
     pub(crate) textures: &'a [BoundTexture<'a>],
     pub(super) out: &'a mut PacketOutput,
+    /// Bit i: colour attachment i is set; bit 31: depth is.
+    pub(super) set: u32,
     pub(crate) events: &'a mut ShaderEvents,
 }
 
@@ -139,6 +147,7 @@ impl<'a, L: Lanes> Fragment<'a, L> {
             primitive: b.primitive,
             textures: b.textures,
             out,
+            set: 0,
             events: b.events,
         };
         if b.planes.perspective != 0 {
@@ -224,9 +233,24 @@ impl<'a, L: Lanes> Fragment<'a, L> {
         self.live & !self.out.discarded
     }
 
-    /// Sets all four channels of colour attachment `i`.
+    /// Outputs that the shader left alone are 0, whatever an earlier one computed.
+    #[inline(always)]
+    pub(super) fn finish(&mut self, attachments: usize, depth: bool) {
+        let zero = F32::splat(self.l, 0.0);
+        for i in 0..attachments {
+            if self.set >> i & 1 == 0 {
+                self.set_color(i, [zero; 4]);
+            }
+        }
+        if depth && self.set & DEPTH_SET == 0 {
+            self.set_depth(zero);
+        }
+    }
+
+    /// Sets all four channels of colour attachment `i`; those that are never set are 0.
     #[inline(always)]
     pub fn set_color(&mut self, i: usize, rgba: [F32<L>; 4]) {
+        self.set |= 1 << (i & 15);
         if let Some(c) = self.out.color.get_mut(i) {
             for (slot, v) in c.iter_mut().zip(rgba) {
                 v.store(slot);
@@ -241,9 +265,10 @@ impl<'a, L: Lanes> Fragment<'a, L> {
         self.set_color(i, [bits; 4]);
     }
 
-    /// Sets the depth; only where the shader declared it.
+    /// Sets the depth; only where the shader declared it. It is 0 otherwise.
     #[inline(always)]
     pub fn set_depth(&mut self, depth: F32<L>) {
+        self.set |= DEPTH_SET;
         depth.store(&mut self.out.depth);
     }
 

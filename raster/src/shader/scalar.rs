@@ -165,6 +165,7 @@ where
                 }
             }
         }
+        f.set = u32::MAX;
         if self.outputs.discards {
             f.discard(Mask::from_bits(l, discarded));
         }

@@ -209,6 +209,8 @@ pub(super) fn run<L: Lanes, const D24: bool>(
         primitive: t.primitive,
         textures: &env.config.textures,
         out: env.outputs,
+        attachments: env.config.targets.len(),
+        writes_depth: env.config.writes_shader_depth,
         events: &mut env.counters.shader,
     };
     shader.shade_block(env.level, &mut block);

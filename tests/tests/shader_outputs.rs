@@ -1,0 +1,201 @@
+//! What becomes of a fragment shader's outputs: those that it leaves alone are 0,
+//! and a shader of one colour that is not run gives what it would have given.
+
+use std::sync::Arc;
+
+use gnomon_raster::shader::{
+    Fragment, FragmentShader, FragmentStage, ScalarVertexOutput, VertexStage, per_vertex,
+};
+use gnomon_raster::state::{
+    BlendState, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState,
+};
+use gnomon_raster::{
+    ColorAttachment, CommandList, Counters, Draw, F32, Format, Gpu, GpuConfig, Lanes, LoadOp,
+    RenderPass, RenderPipeline, SimdLevel, StoreOp, Subresource, TextureDescriptor,
+};
+
+const SIZE: u32 = 72;
+
+/// Colour 1 everywhere, in every attachment.
+struct Both;
+
+impl FragmentShader for Both {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let one = F32::splat(l, 1.0);
+        f.set_color(0, [one; 4]);
+        f.set_color(1, [one; 4]);
+    }
+}
+
+/// Sets attachment 1 never, and attachment 0 in every other block.
+struct Sometimes;
+
+impl FragmentShader for Sometimes {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        if f.column().to_array()[0] / 8 % 2 == 0 {
+            f.set_color(0, [F32::splat(l, 0.5); 4]);
+        }
+    }
+}
+
+/// One colour; says so or not.
+#[derive(Clone, Copy)]
+struct Plain {
+    color: [f32; 4],
+    says_so: bool,
+}
+
+impl FragmentShader for Plain {
+    fn constant(&self) -> Option<[f32; 4]> {
+        self.says_so.then_some(self.color)
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let [r, g, b, a] = self.color;
+        f.set_color(
+            0,
+            [
+                F32::splat(l, r),
+                F32::splat(l, g),
+                F32::splat(l, b),
+                F32::splat(l, a),
+            ],
+        );
+    }
+}
+
+/// A triangle over most of the image and beyond its edges.
+fn corners() -> VertexStage {
+    per_vertex(&[], |v| {
+        let [x, y] = [[-1.3, -0.9], [1.2, -1.1], [0.1, 1.4]][v.vertex_index as usize % 3];
+        ScalarVertexOutput {
+            position: [x, y, 0.5, 1.0],
+            ..Default::default()
+        }
+    })
+}
+
+fn draw(fragment: FragmentStage, targets: Vec<ColorTargetState>) -> Draw {
+    let pipeline = RenderPipeline {
+        label: "draw".into(),
+        vertex: corners(),
+        fragment: Some(fragment),
+        primitive: PrimitiveState::default(),
+        depth_stencil: DepthStencilState::default(),
+        color_targets: targets,
+    };
+    Draw::vertices_only("triangle", &Arc::new(pipeline), 3)
+}
+
+fn run(
+    config: GpuConfig,
+    formats: &[Format],
+    draws: Vec<Draw>,
+) -> (Vec<Vec<[u8; 4]>>, Vec<Counters>) {
+    let mut gpu = Gpu::new(config).unwrap();
+    let textures: Vec<_> = formats
+        .iter()
+        .map(|&f| {
+            gpu.create_texture(&TextureDescriptor::d2("image", f, SIZE, SIZE))
+                .unwrap()
+        })
+        .collect();
+    let color = textures.iter().map(|&texture| ColorAttachment {
+        texture,
+        subresource: Subresource::default(),
+        load: LoadOp::Clear([0.25, 0.5, 0.75, 1.0]),
+        store: StoreOp::Store,
+    });
+    let report = gpu
+        .submit(&CommandList {
+            passes: vec![RenderPass {
+                label: "main".into(),
+                color: color.collect(),
+                depth_stencil: None,
+                draws,
+            }],
+        })
+        .unwrap();
+    let read = |&t| {
+        let texels = gpu
+            .texture(t)
+            .unwrap()
+            .read_color(Subresource::default())
+            .unwrap();
+        texels
+            .iter()
+            .map(|t| t.0.map(|c| (c * 255.0) as u8))
+            .collect()
+    };
+    let counters = report.passes[0].draws.iter().map(|d| d.counters).collect();
+    (textures.iter().map(read).collect(), counters)
+}
+
+#[test]
+fn outputs_that_are_not_set_are_zero_whatever_was_drawn_before() {
+    for simd in SimdLevel::available() {
+        for (threads, tile) in [(1, 16), (2, 32), (4, 128)] {
+            let config = GpuConfig {
+                threads,
+                tile,
+                simd,
+                ..GpuConfig::default()
+            };
+            let two = || vec![ColorTargetState::OPAQUE; 2];
+            let draws = vec![draw(Both.into(), two()), draw(Sometimes.into(), two())];
+            let (images, _) = run(config, &[Format::Rgba8Unorm; 2], draws);
+            let touched = |at: usize| images[1][at] == [0; 4];
+            let all = images[0].len();
+            assert!((0..all).filter(|&i| touched(i)).count() > all / 3);
+            for at in (0..all).filter(|&at| touched(at)) {
+                let set = (at as u32 % SIZE / 8).is_multiple_of(2);
+                let expect = if set { [128; 4] } else { [0; 4] };
+                assert_eq!(images[0][at], expect, "{simd}, {threads}, {tile} at {at}");
+            }
+            assert!(images[1].iter().all(|t| *t != [255; 4]), "drawn over");
+        }
+    }
+}
+
+#[test]
+fn one_colour_is_the_same_with_and_without_running_the_shader() {
+    let masked = |blend| ColorTargetState {
+        blend,
+        write_mask: ColorWrites(0b0101),
+    };
+    let whole = |blend| ColorTargetState {
+        blend,
+        write_mask: ColorWrites::ALL,
+    };
+    let blends = [
+        None,
+        Some(BlendState::ADDITIVE),
+        Some(BlendState::SUBTRACTIVE),
+    ];
+    let colors = [
+        [0.1, 0.7, 1.0, 0.0],
+        [-0.0, 0.5, 0.5, 0.5],
+        [2.0, -1.0, f32::NAN, 0.3],
+    ];
+    for format in [Format::Rgba8Unorm, Format::Rgba16Float, Format::Rg8Unorm] {
+        for color in colors {
+            for target in blends.into_iter().flat_map(|b| [masked(b), whole(b)]) {
+                let result = |says_so| {
+                    let shader = Plain { color, says_so };
+                    let draws = vec![draw(shader.into(), vec![target]); 2];
+                    run(GpuConfig::default(), &[format], draws)
+                };
+                let (plain, skipped) = (result(false), result(true));
+                assert!(
+                    plain == skipped,
+                    "{format:?}, {color:?}, {target:?}: {:?} and {:?}",
+                    plain.1,
+                    skipped.1
+                );
+            }
+        }
+    }
+}

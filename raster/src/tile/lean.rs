@@ -176,6 +176,10 @@ fn compare<L: Lanes>(l: L, f: CompareFunction, z: &[I32<L>; PACKETS], stored: &B
             #[inline(always)]
             |k| z[k].le(depth::load(l, stored, k)).bits(),
         ),
+        CompareFunction::Equal => packets(
+            #[inline(always)]
+            |k| z[k].eq(depth::load(l, stored, k)).bits(),
+        ),
         _ => {
             let (mut less, mut equal) = (0, 0);
             for (k, z) in z.iter().enumerate() {

@@ -44,6 +44,7 @@ use crate::technique::{
     Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
 };
 use crate::wedge::{Wedge, WedgeStatistics};
+use crate::wedge_work::COVERAGE_DRAW;
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumes;
@@ -332,7 +333,7 @@ impl Volumes<'_> {
             CoverTo::Visibility
         };
         let pipeline = WedgePipeline {
-            label: "penumbra",
+            label: COVERAGE_DRAW,
             fragment: shader(to),
             targets: vec![ColorTargetState::ADDITIVE; self.buffers.targets().len()],
             textures: self.bindings(self.positions.texture),
@@ -352,7 +353,7 @@ impl Volumes<'_> {
     ) -> [RenderPass; 2] {
         let visibility = self.buffers.visibility;
         let add = WedgePipeline {
-            label: "penumbra",
+            label: "penumbra aside",
             fragment: shader(CoverTo::Copied),
             targets: vec![ColorTargetState::OPAQUE],
             textures: self.bindings(visibility),

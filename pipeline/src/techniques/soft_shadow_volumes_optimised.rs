@@ -41,6 +41,7 @@ use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_
 use crate::scene::Scene;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
 use crate::wedge::{Wedge, WedgeStatistics};
+use crate::wedge_work::COVERAGE_DRAW;
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumesOptimised;
@@ -355,7 +356,7 @@ impl Volumes<'_> {
         let lookups = self.tables.iter().flat_map(|(_, textures)| textures);
         let textures = [self.positions.texture].into_iter().chain(lookups.copied());
         let pipeline = WedgePipeline {
-            label: "penumbra",
+            label: COVERAGE_DRAW,
             fragment: shader.stage(),
             targets: vec![ColorTargetState::ADDITIVE; 2],
             textures: textures.map(binding).collect(),

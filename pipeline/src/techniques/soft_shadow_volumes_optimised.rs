@@ -12,7 +12,8 @@
 //! * Both 8-bit buffers are attached at once and the shader chooses by the side of
 //!   the hard quad, which the paper had to leave for want of precision: here count
 //!   and side are one expression on one position ([`super::soft_shadow_volumes`]),
-//!   and a wedge need not be drawn in halves.
+//!   and a wedge need not be drawn in halves. With `halves=on` it is: one buffer
+//!   after the other, for less colour traffic and more draws.
 //! * Carry bits hold [`gnomon_shaders::split_volumes::CAPACITY`] full contributions
 //!   for certain; the counters tell where a channel saturated.
 
@@ -23,7 +24,7 @@ use gnomon_raster::{
 };
 use gnomon_shaders::soft_volumes::{CountTo, HardPlane};
 use gnomon_shaders::split_volumes::{
-    AddVisibility, Combination, CombineGroups, SplitPenumbra, Tables,
+    AddVisibility, Combination, CombineGroups, Halves, SplitPenumbra, Tables,
 };
 use gnomon_shaders::transform::FullScreen;
 
@@ -31,6 +32,7 @@ use super::casters::{OPEN_CASTERS, SKIP};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::soft::count::Counting;
 use super::soft::edges::{Casters, Silhouettes};
+use super::soft::halves::Half;
 use super::soft::light::{LightSide, SoftLight, split};
 use super::soft::split_tables;
 use super::soft::wedges::{
@@ -79,6 +81,13 @@ const SPLIT: ParamInfo = ParamInfo {
     summary: "k: a rectangle as k x k lights, each with its own silhouettes and wedges",
 };
 
+const HALVES: ParamInfo = ParamInfo {
+    name: "halves",
+    default: "off",
+    valid: "on|off",
+    summary: "inner and outer halves of wedges apart, each culled and to one buffer; same bits",
+};
+
 impl Technique for SoftShadowVolumesOptimised {
     fn name(&self) -> &'static str {
         "soft-shadow-volumes-optimised"
@@ -95,6 +104,7 @@ impl Technique for SoftShadowVolumesOptimised {
             SPLIT_BITS,
             COMBINE,
             SPLIT,
+            HALVES,
             SPHERE,
             OPEN_CASTERS,
             passes::LIGHT,
@@ -145,7 +155,7 @@ impl Technique for SoftShadowVolumesOptimised {
                 let label = |what: &str| passes::label(what, number, &lights);
                 for (turn, group) in groups.iter().enumerate() {
                     list.push(volumes.count_pass(label("quads"), group));
-                    list.push(volumes.wedge_pass(label("wedges"), group, &mut met));
+                    list.extend(volumes.wedge_passes(&label("wedges"), group, &mut met));
                     list.push(buffers.combine_pass(label("combine"), turn));
                 }
                 let add = AddVisibility {
@@ -313,28 +323,58 @@ impl Volumes<'_> {
         }
     }
 
-    fn wedge_pass(&self, label: String, group: &Silhouettes, met: &mut Met) -> RenderPass {
+    /// Both buffers at once, or one after the other with the half that it takes.
+    fn wedge_passes(&self, label: &str, group: &Silhouettes, met: &mut Met) -> Vec<RenderPass> {
+        let [added, taken] = self.buffers.split;
+        if self.params.get(HALVES.name) != "on" {
+            let to = WedgeTarget {
+                buffers: vec![added, taken],
+                half: None,
+            };
+            return vec![self.wedge_pass(label, group, &to, met)];
+        }
+        let of = |half, buffer| WedgeTarget {
+            buffers: vec![buffer],
+            half: Some(half),
+        };
+        let inner = self.wedge_pass(label, group, &of(Half::Inner, added), met);
+        // The edges are the same; they are counted once.
+        let mut outer_met = Met {
+            areas: met.areas,
+            ..Met::default()
+        };
+        let outer = self.wedge_pass(label, group, &of(Half::Outer, taken), &mut outer_met);
+        met.areas = outer_met.areas;
+        vec![inner, outer]
+    }
+
+    fn wedge_pass(
+        &self,
+        label: &str,
+        group: &Silhouettes,
+        to: &WedgeTarget,
+        met: &mut Met,
+    ) -> RenderPass {
         let construction = construction(self.params);
         let mut draws = Vec::new();
         for side in &self.light.sides {
             for edge in group.edges.iter().filter(|e| e.has_plane()) {
                 let parts = Wedge::of_edge(construction, &side.area, edge.ends, &mut met.wedges);
                 for part in parts {
-                    let area = WedgeArea::new(
-                        self.view,
-                        construction,
-                        &side.area,
-                        part.edge,
-                        &mut met.areas,
-                    );
-                    draws.extend(self.wedge(side, &part, HardPlane(edge.normal), &area));
+                    let (view, light, areas) = (self.view, &side.area, &mut met.areas);
+                    let area = match to.half {
+                        None => WedgeArea::new(view, construction, light, part.edge, areas),
+                        Some(h) => WedgeArea::half(view, construction, light, part.edge, h, areas),
+                    };
+                    draws.extend(self.wedge(side, &part, HardPlane(edge.normal), &area, to));
                 }
             }
         }
         let clear = LoadOp::Clear([0.0; 4]);
+        let buffers = to.buffers.iter();
         RenderPass {
-            label,
-            color: self.buffers.split.map(|t| attachment(t, clear)).to_vec(),
+            label: label.to_owned(),
+            color: buffers.map(|t| attachment(*t, clear)).collect(),
             depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
             draws,
         }
@@ -346,23 +386,36 @@ impl Volumes<'_> {
         part: &Wedge,
         plane: HardPlane,
         area: &WedgeArea,
+        to: &WedgeTarget,
     ) -> Vec<Draw> {
         let shader = SplitPenumbra {
             light: side.projector,
             edge: side.edge(part.edge),
             plane,
             tables: self.tables.map(|(tables, _)| tables).unwrap_or_default(),
+            halves: match to.half {
+                None => Halves::Both,
+                Some(Half::Inner) => Halves::Inner,
+                Some(Half::Outer) => Halves::Outer,
+            },
         };
         let lookups = self.tables.iter().flat_map(|(_, textures)| textures);
         let textures = [self.positions.texture].into_iter().chain(lookups.copied());
         let pipeline = WedgePipeline {
             label: COVERAGE_DRAW,
             fragment: shader.stage(),
-            targets: vec![ColorTargetState::ADDITIVE; 2],
+            targets: vec![ColorTargetState::ADDITIVE; to.buffers.len()],
             textures: textures.map(binding).collect(),
             skip: self.params.get(SKIP.name) != "off",
             note: Note::TakeAndRemove,
         };
         area.draws(self.view, pipeline)
     }
+}
+
+/// Where wedges are drawn to, and what of them.
+struct WedgeTarget {
+    buffers: Vec<TextureId>,
+    /// Whole wedges where there is none.
+    half: Option<Half>,
 }

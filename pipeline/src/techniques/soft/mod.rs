@@ -4,6 +4,7 @@
 pub(super) mod count;
 pub(super) mod covering;
 pub(super) mod edges;
+pub(super) mod halves;
 pub(super) mod light;
 pub(super) mod light_image;
 pub(super) mod split_tables;

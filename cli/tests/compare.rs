@@ -96,7 +96,12 @@ fn work_of_wedges_is_told() {
     assert!(work["shaded"].as_u64() > work["covering"].as_u64());
     let render = "render parallel-plates --size 64x48 --technique soft-shadow-volumes --json";
     assert_eq!(folder.gnomon(render).json()["wedge_work"], *work);
-    assert!(folder.gnomon(&both).stdout().contains("over penumbra pairs"));
+    assert!(
+        folder
+            .gnomon(&both)
+            .stdout()
+            .contains("over penumbra pairs")
+    );
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //!
 //! Per sub-light and group of silhouettes: hard count, wedges, and a pass that adds
 //! what the group hides to what others do. With `combine=sum` all casters are one
-//! group; otherwise each caster is one, whose loops (outlines and holes) are summed.
+//! group; otherwise each outline is one, with its holes, or each caster.
 //! The light's visibility is the mean over the sub-lights.
 //!
 //! # Departures from the paper, and why
@@ -71,7 +71,14 @@ const COMBINE: ParamInfo = ParamInfo {
     name: "combine",
     default: "sum",
     valid: "sum|paper|bounded",
-    summary: "casters: summed, max + min/2 one after the other, or half way from max to sum",
+    summary: "silhouettes: summed, max + min/2 one after the other, or half way from max to sum",
+};
+
+const COMBINE_OVER: ParamInfo = ParamInfo {
+    name: "combine-over",
+    default: "outline",
+    valid: "outline|caster",
+    summary: "what is combined unless summed: outlines with their holes, or all of a caster's",
 };
 
 const SPLIT: ParamInfo = ParamInfo {
@@ -103,6 +110,7 @@ impl Technique for SoftShadowVolumesOptimised {
             COVERAGE,
             SPLIT_BITS,
             COMBINE,
+            COMBINE_OVER,
             SPLIT,
             HALVES,
             SPHERE,
@@ -141,7 +149,8 @@ impl Technique for SoftShadowVolumesOptimised {
                 let light = SoftLight::new(self.name(), part, number, &draws.view, seen)?;
                 let groups = match combination(params) {
                     Combination::Sum => vec![casters.silhouettes(light.centre)],
-                    _ => casters.each(light.centre),
+                    _ if params.get(COMBINE_OVER.name) == "caster" => casters.each(light.centre),
+                    _ => casters.outlines(light.centre),
                 };
                 let volumes = Volumes {
                     view: &draws.view,

@@ -7,6 +7,7 @@ pub(super) mod edges;
 pub(super) mod halves;
 pub(super) mod light;
 pub(super) mod light_image;
+mod outlines;
 pub(super) mod split_tables;
 pub(super) mod table;
 pub(super) mod wedges;

@@ -319,6 +319,33 @@ impl<'a> SceneDraws<'a> {
         surfaces.map(draw).collect()
     }
 
+    /// Draws of the facets that cast and take shadow and to which `flat` gives
+    /// numbers, where they are seen; for a pass with one colour attachment and the
+    /// depth of the frame.
+    pub(super) fn shadowed_facets(
+        &self,
+        label: &str,
+        (fragment, target): (FragmentStage, ColorTargetState),
+        flat: &dyn Fn([DVec3; 3]) -> Option<[f32; 4]>,
+    ) -> Vec<Draw> {
+        let both = |s: &&SurfaceDraw<'_>| s.object.casts && s.object.receives;
+        let draw = |s: &SurfaceDraw<'_>| {
+            let pipeline = RenderPipeline {
+                label: label.to_owned(),
+                vertex: Facets(self.view.clip_from_world).stage(),
+                fragment: Some(fragment.clone()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![target],
+            };
+            s.draw_flat(pipeline, flat)
+        };
+        let draws = self.surfaces.iter().filter(both).map(draw);
+        draws
+            .filter(|d| d.indices.as_ref().is_some_and(|i| !i.indices().is_empty()))
+            .collect()
+    }
+
     fn lit_shader(
         &self,
         material: &Material,
@@ -388,6 +415,22 @@ impl<'a> SurfaceDraw<'a> {
 
     /// Each triangle with its plane, for [`Facets`].
     fn draw_facets(&self, view: &View, pipeline: RenderPipeline) -> Draw {
+        let plane = |corners: [DVec3; 3]| {
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let [x, y, z] = narrow(normal);
+            Some([x, y, z, normal.dot(a - view.eye()) as f32])
+        };
+        self.draw_flat(pipeline, &plane)
+    }
+
+    /// The triangles to which `flat` gives four numbers, for the flat varyings of
+    /// [`Facets`]; corners are relative to the view's origin.
+    fn draw_flat(
+        &self,
+        pipeline: RenderPipeline,
+        flat: &dyn Fn([DVec3; 3]) -> Option<[f32; 4]>,
+    ) -> Draw {
         let stride = self.vertices.stride;
         let corner = |i: u32| {
             let at = i as usize * stride;
@@ -396,13 +439,12 @@ impl<'a> SurfaceDraw<'a> {
         let mut data = Vec::new();
         for triangle in self.indices.indices().chunks_exact(3) {
             let corners = [0, 1, 2].map(|k| corner(triangle[k]));
-            let [a, b, c] = corners.map(widen);
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            let distance = normal.dot(a - view.eye()) as f32;
+            let Some(numbers) = flat(corners.map(widen)) else {
+                continue;
+            };
             for p in corners {
                 data.extend(p);
-                data.extend(narrow(normal));
-                data.push(distance);
+                data.extend(numbers);
             }
         }
         let vertices = Arc::new(VertexBuffer { data, stride: 7 });
@@ -495,6 +537,11 @@ impl View {
     /// A world-space position relative to the origin, as shaders have it.
     pub(super) fn relative(&self, p: DVec3) -> DVec3 {
         p - self.origin
+    }
+
+    /// A position relative to the origin, in world space.
+    pub(super) fn absolute(&self, p: DVec3) -> DVec3 {
+        p + self.origin
     }
 
     /// A world-space position relative to the origin.

@@ -34,6 +34,7 @@ use super::soft::covering::{
     light_image,
 };
 use super::soft::edges::{Casters, Silhouettes};
+use super::soft::horizon::{self, HORIZON};
 use super::soft::light::SoftLight;
 use super::soft::wedges::{
     AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
@@ -98,6 +99,7 @@ impl Technique for SoftShadowVolumes {
             BUFFER,
             COPY_BACK,
             SPHERE,
+            HORIZON,
             OPEN_CASTERS,
             passes::LIGHT,
             SKIP,
@@ -141,6 +143,11 @@ impl Technique for SoftShadowVolumes {
             list.push(volumes.count_pass(label("quads"), &silhouettes));
             list.extend(volumes.wedge_passes(&label("wedges"), &silhouettes, &mut warnings));
             list.extend(buffers.resolve_pass(label("resolve")));
+            let image = light_image(params);
+            if horizon::wanted(self.name(), light, &soft, image.as_ref(), params)? {
+                let (label, visibility) = (label("horizon"), buffers.visibility());
+                list.extend(horizon::pass(label, &draws, &targets, &soft, visibility));
+            }
             let test = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }

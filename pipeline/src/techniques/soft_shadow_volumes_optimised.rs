@@ -33,6 +33,7 @@ use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::soft::count::Counting;
 use super::soft::edges::{Casters, Silhouettes};
 use super::soft::halves::Half;
+use super::soft::horizon::{self, HORIZON};
 use super::soft::light::{LightSide, SoftLight, split};
 use super::soft::split_tables;
 use super::soft::wedges::{
@@ -114,6 +115,7 @@ impl Technique for SoftShadowVolumesOptimised {
             SPLIT,
             HALVES,
             SPHERE,
+            HORIZON,
             OPEN_CASTERS,
             passes::LIGHT,
             SKIP,
@@ -175,6 +177,18 @@ impl Technique for SoftShadowVolumesOptimised {
             }
             let label = |what: &str| passes::label(what, number, &lights);
             warnings.extend(warnings_of(&label("wedges"), &met.wedges, &met.areas));
+            let seen = params.get(SPHERE.name) != "equator";
+            let whole = SoftLight::new(
+                self.name(),
+                &scene.lights[number],
+                number,
+                &draws.view,
+                seen,
+            )?;
+            if horizon::wanted(self.name(), number, &whole, None, params)? {
+                let (label, visibility) = (label("horizon"), buffers.visibility());
+                list.extend(horizon::pass(label, &draws, &targets, &whole, visibility));
+            }
             let visibility = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, number, &label("lit"), visibility));
         }

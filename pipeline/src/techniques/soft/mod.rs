@@ -5,6 +5,7 @@ pub(super) mod count;
 pub(super) mod covering;
 pub(super) mod edges;
 pub(super) mod halves;
+pub(super) mod horizon;
 pub(super) mod light;
 pub(super) mod light_image;
 mod outlines;

@@ -17,9 +17,9 @@
 #   BUILD=yes         "no" takes the bench that an earlier run has built
 #   CARGO_TARGET_DIR  as for cargo
 #
-# Embree's error is against the exact visibility that our oracle gives, like ours;
-# its ray count is the one whose error equals ours, between the two counts measured
-# on either side of it. See equal_error.py.
+# Our error is against the exact oracle, Embree's is its noise alone, against 4096
+# rays of its own. Its ray count is the one whose error equals ours, between the two
+# counts measured on either side of it. See embree_turn.py and equal_error.py.
 set -euo pipefail
 usage='usage: beside-embree.sh PEERS PYTHON [OUT]'
 peers=${1:?$usage}

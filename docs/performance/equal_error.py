@@ -59,6 +59,8 @@ def main():
                  spread(lambda t: (rays(t) + eye(t)) / frame(t)), spread(lambda t: (rays(t) + eye(t)) / (frame(t) + built(t)))]
         print('| %s | %s |' % (scene, ' | '.join(cells)))
     print()
+    biases = {t['scene']: t['theirs']['bias'] for t in turns}
+    print('Embree with 4096 rays against the exact visibility: ' + ', '.join('%s %.5f' % b for b in sorted(biases.items())) + '.')
     print('%s, %d threads; ours on %d, %s' % (turns[0]['theirs']['embree'], turns[0]['theirs']['threads'], turns[0]['ours']['threads'],
                                              turns[0]['ours']['technique']))
     if a.json:

@@ -81,6 +81,29 @@ fn json_has_the_documented_keys() {
     assert!(results[2]["bytes"].as_u64() > results[1]["bytes"].as_u64());
 }
 
+/// The same figure as `render` has, and none where there are no wedges.
+#[test]
+fn work_of_wedges_is_told() {
+    let folder = Folder::new("compare-wedges");
+    let both = format!("{PLATES} shadow-volumes,soft-shadow-volumes");
+    let doc = folder.gnomon(&format!("{both} --json")).json();
+    assert!(doc["results"][0]["wedge_work"].is_null());
+    let work = &doc["results"][1]["wedge_work"];
+    assert!(
+        (1.0..1.3).contains(&work["ratio"].as_f64().unwrap()),
+        "{work}"
+    );
+    assert!(work["shaded"].as_u64() > work["covering"].as_u64());
+    let render = "render parallel-plates --size 64x48 --technique soft-shadow-volumes --json";
+    assert_eq!(folder.gnomon(render).json()["wedge_work"], *work);
+    assert!(
+        folder
+            .gnomon(&both)
+            .stdout()
+            .contains("over penumbra pairs")
+    );
+}
+
 #[test]
 fn the_second_time_the_truth_is_read_and_the_same() {
     let folder = Folder::new("compare-cache");

@@ -68,4 +68,5 @@ mod techniques;
 pub mod tile_traffic;
 pub mod volume;
 pub mod wedge;
+pub mod wedge_work;
 pub mod winding;

@@ -39,6 +39,7 @@ stages!(VertexStage:
     transform::Facets, soft_volumes::HardQuads, soft_volumes::EyeCount);
 stages!(FragmentStage:
     surface::Constant, surface::Lambert, surface::Phong, surface::AmbientWithPosition,
+    surface::FacetValue,
     surface::Shadowed<surface::Lambert>, surface::Shadowed<surface::Phong>,
     soft_volumes::HardCount, soft_volumes::Resolve,
     split_volumes::SplitPenumbra, split_volumes::CombineGroups, split_volumes::AddVisibility,

@@ -42,8 +42,18 @@ pub struct Tables {
     pub split: bool,
 }
 
-/// The penumbra of one edge; attachments 0 and 1 are the additive and the
-/// subtractive buffer.
+/// Which buffers a wedge is drawn to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halves {
+    /// Attachment 0 is the additive buffer, 1 the subtractive one.
+    Both,
+    /// The additive one alone, attachment 0: fragments on the umbra side.
+    Inner,
+    /// The subtractive one alone, attachment 0: all other fragments.
+    Outer,
+}
+
+/// The penumbra of one edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SplitPenumbra {
     /// The light.
@@ -54,6 +64,8 @@ pub struct SplitPenumbra {
     pub plane: HardPlane,
     /// What is looked up.
     pub tables: Tables,
+    /// Where the coverage goes.
+    pub halves: Halves,
 }
 
 impl FragmentShader for SplitPenumbra {
@@ -72,20 +84,22 @@ impl FragmentShader for SplitPenumbra {
         let bits = self.bits(l, f, &segment);
         let inside = self.plane.umbra_side(l, from);
         let zero = F32::splat(l, 0.0);
-        f.set_color(
-            0,
-            each4(
-                #[inline(always)]
-                |i| inside.select_f32(bits[i], zero),
-            ),
+        let added = each4(
+            #[inline(always)]
+            |i| inside.select_f32(bits[i], zero),
         );
-        f.set_color(
-            1,
-            each4(
-                #[inline(always)]
-                |i| inside.select_f32(zero, bits[i]),
-            ),
+        let taken = each4(
+            #[inline(always)]
+            |i| inside.select_f32(zero, bits[i]),
         );
+        match self.halves {
+            Halves::Both => {
+                f.set_color(0, added);
+                f.set_color(1, taken);
+            }
+            Halves::Inner => f.set_color(0, added),
+            Halves::Outer => f.set_color(0, taken),
+        }
     }
 }
 

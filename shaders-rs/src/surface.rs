@@ -94,6 +94,18 @@ impl FragmentShader for AmbientWithPosition {
     }
 }
 
+/// The first flat varying of [`crate::transform::Facets`] in all channels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetValue;
+
+impl FragmentShader for FacetValue {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, _: L, f: &mut Fragment<'_, L>) {
+        let value = f.varying(3);
+        f.set_color(0, [value; 4]);
+    }
+}
+
 /// Diffuse and specular light of a surface, linear RGB.
 pub trait Reflection: Send + Sync {
     /// The light towards the eye, all of the light source being visible.

@@ -2,6 +2,7 @@
 
 use gnomon_pipeline::render::Rendered;
 use gnomon_pipeline::technique::{Params, Technique, VolumeMethod, Warning};
+use gnomon_pipeline::wedge_work::WedgeWork;
 use gnomon_raster::{
     ClientTraffic, Counters, FragmentCounters, GpuConfig, PassReport, SubmitReport, TileCounters,
     Traffic,
@@ -41,6 +42,8 @@ pub(crate) struct RenderDocument {
     time_ms: Times,
     passes: Vec<PassDocument>,
     totals: WorkDocument,
+    /// `null` for techniques that add no coverage of wedges.
+    wedge_work: Option<WedgeWorkDocument>,
     casters: Vec<CasterDocument>,
     warnings: Vec<WarningDocument>,
     files: Vec<FileDocument>,
@@ -148,6 +151,25 @@ struct TrafficDocument {
     write_bytes: u64,
 }
 
+/// How much of the penumbra shader's work was in penumbrae.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct WedgeWorkDocument {
+    shaded: u64,
+    covering: u64,
+    /// `null` where nothing is covered.
+    ratio: Option<f64>,
+}
+
+impl WedgeWorkDocument {
+    pub(crate) fn of(report: &SubmitReport) -> Option<Self> {
+        WedgeWork::of(report).map(|work| Self {
+            shaded: work.shaded,
+            covering: work.covering,
+            ratio: Some(work.ratio()).filter(|r| r.is_finite()),
+        })
+    }
+}
+
 #[derive(Clone, Debug, Serialize)]
 struct CasterDocument {
     object: String,
@@ -189,6 +211,7 @@ impl RenderDocument {
             },
             passes: done.report.passes.iter().map(PassDocument::new).collect(),
             totals: WorkDocument::total(&done.report),
+            wedge_work: WedgeWorkDocument::of(&done.report),
             casters: casters(job.scene, done),
             warnings: done.warnings.iter().map(WarningDocument::new).collect(),
             files,

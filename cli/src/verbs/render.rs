@@ -6,6 +6,7 @@ use gnomon_pipeline::heat::{self, Heat};
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{self, Scene};
 use gnomon_pipeline::technique::{Params, Technique, find};
+use gnomon_pipeline::wedge_work::WedgeWork;
 
 use crate::args::{OverlayKind, RenderArgs};
 use crate::error::CliError;
@@ -185,6 +186,14 @@ fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
     text += &tables::work(&frame).to_text();
     text.push('\n');
     text += &tables::traffic(&frame).to_text();
+    if let Some(work) = WedgeWork::of(&done.report) {
+        text += &format!(
+            "\nwedges shaded {} fragments for {} pairs of a pixel and a penumbra that it is in: {:.2} times\n",
+            numbers::count(work.shaded),
+            numbers::count(work.covering),
+            work.ratio(),
+        );
+    }
     text += &format!(
         "\ncolor      {}\nvisibility {}\n",
         done.color_hash(),

@@ -186,6 +186,23 @@ impl AreaLight {
         }
     }
 
+    /// How far it reaches from its centre in a direction of length 1.
+    pub fn reach(&self, direction: DVec3) -> f64 {
+        match self {
+            Self::Polygon {
+                corners, centre, ..
+            } => {
+                let along = corners.iter().map(|c| (*c - *centre).dot(direction));
+                along.fold(0.0, f64::max)
+            }
+            Self::Disc { normal, radius, .. } => {
+                let sine2 = 1.0 - normal.dot(direction) * normal.dot(direction);
+                radius * sine2.max(0.0).sqrt()
+            }
+            Self::Sphere { radius, .. } => *radius,
+        }
+    }
+
     /// Unit normal into the lit half-space; `None` for spheres.
     pub fn normal(&self) -> Option<DVec3> {
         match self {

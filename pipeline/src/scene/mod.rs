@@ -5,12 +5,14 @@ mod camera;
 pub mod file;
 mod frame_model;
 mod open;
+mod placed;
 
 use std::sync::Arc;
 
 pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
+pub use placed::PlacedError;
 
 use crate::light::Light;
 use crate::mesh::Mesh;

@@ -62,11 +62,16 @@ impl Examined<'_> {
     /// The silhouette edges seen from `light`.
     pub(super) fn silhouette(&self, light: HardLight) -> Silhouette {
         let mesh = &self.object.mesh;
+        Silhouette::new(mesh, self.caster.adjacency(), &self.orientation(light))
+    }
+
+    /// How often each triangle casts, seen from `light`.
+    pub(super) fn orientation(&self, light: HardLight) -> Orientation {
+        let mesh = &self.object.mesh;
         let facing = light_facing(mesh, light);
-        let orientation = match self.caster.counting(mesh, light) {
+        match self.caster.counting(mesh, light) {
             Counting::LightFacing => Orientation::closed(&facing),
             Counting::AllTriangles => Orientation::generalised(&facing),
-        };
-        Silhouette::new(mesh, self.caster.adjacency(), &orientation)
+        }
     }
 }

@@ -12,7 +12,10 @@ mod shadow_volumes;
 mod soft;
 mod soft_shadow_volumes;
 mod soft_shadow_volumes_optimised;
+mod surface_draw;
+mod targets;
 mod unshadowed;
+mod view;
 mod visibility;
 mod volume_draws;
 

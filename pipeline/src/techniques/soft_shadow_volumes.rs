@@ -34,6 +34,7 @@ use super::soft::covering::{
     light_image,
 };
 use super::soft::edges::{Casters, Silhouettes};
+use super::soft::horizon::{self, HORIZON};
 use super::soft::light::SoftLight;
 use super::soft::wedges::{
     AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
@@ -44,6 +45,7 @@ use crate::technique::{
     Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
 };
 use crate::wedge::{Wedge, WedgeStatistics};
+use crate::wedge_work::COVERAGE_DRAW;
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumes;
@@ -97,6 +99,7 @@ impl Technique for SoftShadowVolumes {
             BUFFER,
             COPY_BACK,
             SPHERE,
+            HORIZON,
             OPEN_CASTERS,
             passes::LIGHT,
             SKIP,
@@ -140,6 +143,11 @@ impl Technique for SoftShadowVolumes {
             list.push(volumes.count_pass(label("quads"), &silhouettes));
             list.extend(volumes.wedge_passes(&label("wedges"), &silhouettes, &mut warnings));
             list.extend(buffers.resolve_pass(label("resolve")));
+            let image = light_image(params);
+            if horizon::wanted(self.name(), light, &soft, image.as_ref(), params)? {
+                let (label, visibility) = (label("horizon"), buffers.visibility());
+                list.extend(horizon::pass(label, &draws, &targets, &soft, visibility));
+            }
             let test = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }
@@ -332,7 +340,7 @@ impl Volumes<'_> {
             CoverTo::Visibility
         };
         let pipeline = WedgePipeline {
-            label: "penumbra",
+            label: COVERAGE_DRAW,
             fragment: shader(to),
             targets: vec![ColorTargetState::ADDITIVE; self.buffers.targets().len()],
             textures: self.bindings(self.positions.texture),
@@ -352,7 +360,7 @@ impl Volumes<'_> {
     ) -> [RenderPass; 2] {
         let visibility = self.buffers.visibility;
         let add = WedgePipeline {
-            label: "penumbra",
+            label: "penumbra aside",
             fragment: shader(CoverTo::Copied),
             targets: vec![ColorTargetState::OPAQUE],
             textures: self.bindings(visibility),

@@ -4,7 +4,7 @@
 //!
 //! Per sub-light and group of silhouettes: hard count, wedges, and a pass that adds
 //! what the group hides to what others do. With `combine=sum` all casters are one
-//! group; otherwise each caster is one, whose loops (outlines and holes) are summed.
+//! group; otherwise each outline is one, with its holes, or each caster.
 //! The light's visibility is the mean over the sub-lights.
 //!
 //! # Departures from the paper, and why
@@ -12,7 +12,8 @@
 //! * Both 8-bit buffers are attached at once and the shader chooses by the side of
 //!   the hard quad, which the paper had to leave for want of precision: here count
 //!   and side are one expression on one position ([`super::soft_shadow_volumes`]),
-//!   and a wedge need not be drawn in halves.
+//!   and a wedge need not be drawn in halves. With `halves=on` it is: one buffer
+//!   after the other, for less colour traffic and more draws.
 //! * Carry bits hold [`gnomon_shaders::split_volumes::CAPACITY`] full contributions
 //!   for certain; the counters tell where a channel saturated.
 
@@ -23,7 +24,7 @@ use gnomon_raster::{
 };
 use gnomon_shaders::soft_volumes::{CountTo, HardPlane};
 use gnomon_shaders::split_volumes::{
-    AddVisibility, Combination, CombineGroups, SplitPenumbra, Tables,
+    AddVisibility, Combination, CombineGroups, Halves, SplitPenumbra, Tables,
 };
 use gnomon_shaders::transform::FullScreen;
 
@@ -31,6 +32,8 @@ use super::casters::{OPEN_CASTERS, SKIP};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::soft::count::Counting;
 use super::soft::edges::{Casters, Silhouettes};
+use super::soft::halves::Half;
+use super::soft::horizon::{self, HORIZON};
 use super::soft::light::{LightSide, SoftLight, split};
 use super::soft::split_tables;
 use super::soft::wedges::{
@@ -41,6 +44,7 @@ use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_
 use crate::scene::Scene;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
 use crate::wedge::{Wedge, WedgeStatistics};
+use crate::wedge_work::COVERAGE_DRAW;
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumesOptimised;
@@ -68,7 +72,14 @@ const COMBINE: ParamInfo = ParamInfo {
     name: "combine",
     default: "sum",
     valid: "sum|paper|bounded",
-    summary: "casters: summed, max + min/2 one after the other, or half way from max to sum",
+    summary: "silhouettes: summed, max + min/2 one after the other, or half way from max to sum",
+};
+
+const COMBINE_OVER: ParamInfo = ParamInfo {
+    name: "combine-over",
+    default: "outline",
+    valid: "outline|caster",
+    summary: "what is combined unless summed: outlines with their holes, or all of a caster's",
 };
 
 const SPLIT: ParamInfo = ParamInfo {
@@ -76,6 +87,13 @@ const SPLIT: ParamInfo = ParamInfo {
     default: "1",
     valid: "1|2|3|4|5|6|7|8",
     summary: "k: a rectangle as k x k lights, each with its own silhouettes and wedges",
+};
+
+const HALVES: ParamInfo = ParamInfo {
+    name: "halves",
+    default: "off",
+    valid: "on|off",
+    summary: "inner and outer halves of wedges apart, each culled and to one buffer; same bits",
 };
 
 impl Technique for SoftShadowVolumesOptimised {
@@ -93,8 +111,11 @@ impl Technique for SoftShadowVolumesOptimised {
             COVERAGE,
             SPLIT_BITS,
             COMBINE,
+            COMBINE_OVER,
             SPLIT,
+            HALVES,
             SPHERE,
+            HORIZON,
             OPEN_CASTERS,
             passes::LIGHT,
             SKIP,
@@ -130,7 +151,8 @@ impl Technique for SoftShadowVolumesOptimised {
                 let light = SoftLight::new(self.name(), part, number, &draws.view, seen)?;
                 let groups = match combination(params) {
                     Combination::Sum => vec![casters.silhouettes(light.centre)],
-                    _ => casters.each(light.centre),
+                    _ if params.get(COMBINE_OVER.name) == "caster" => casters.each(light.centre),
+                    _ => casters.outlines(light.centre),
                 };
                 let volumes = Volumes {
                     view: &draws.view,
@@ -144,7 +166,7 @@ impl Technique for SoftShadowVolumesOptimised {
                 let label = |what: &str| passes::label(what, number, &lights);
                 for (turn, group) in groups.iter().enumerate() {
                     list.push(volumes.count_pass(label("quads"), group));
-                    list.push(volumes.wedge_pass(label("wedges"), group, &mut met));
+                    list.extend(volumes.wedge_passes(&label("wedges"), group, &mut met));
                     list.push(buffers.combine_pass(label("combine"), turn));
                 }
                 let add = AddVisibility {
@@ -155,6 +177,18 @@ impl Technique for SoftShadowVolumesOptimised {
             }
             let label = |what: &str| passes::label(what, number, &lights);
             warnings.extend(warnings_of(&label("wedges"), &met.wedges, &met.areas));
+            let seen = params.get(SPHERE.name) != "equator";
+            let whole = SoftLight::new(
+                self.name(),
+                &scene.lights[number],
+                number,
+                &draws.view,
+                seen,
+            )?;
+            if horizon::wanted(self.name(), number, &whole, None, params)? {
+                let (label, visibility) = (label("horizon"), buffers.visibility());
+                list.extend(horizon::pass(label, &draws, &targets, &whole, visibility));
+            }
             let visibility = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, number, &label("lit"), visibility));
         }
@@ -312,28 +346,58 @@ impl Volumes<'_> {
         }
     }
 
-    fn wedge_pass(&self, label: String, group: &Silhouettes, met: &mut Met) -> RenderPass {
+    /// Both buffers at once, or one after the other with the half that it takes.
+    fn wedge_passes(&self, label: &str, group: &Silhouettes, met: &mut Met) -> Vec<RenderPass> {
+        let [added, taken] = self.buffers.split;
+        if self.params.get(HALVES.name) != "on" {
+            let to = WedgeTarget {
+                buffers: vec![added, taken],
+                half: None,
+            };
+            return vec![self.wedge_pass(label, group, &to, met)];
+        }
+        let of = |half, buffer| WedgeTarget {
+            buffers: vec![buffer],
+            half: Some(half),
+        };
+        let inner = self.wedge_pass(label, group, &of(Half::Inner, added), met);
+        // The edges are the same; they are counted once.
+        let mut outer_met = Met {
+            areas: met.areas,
+            ..Met::default()
+        };
+        let outer = self.wedge_pass(label, group, &of(Half::Outer, taken), &mut outer_met);
+        met.areas = outer_met.areas;
+        vec![inner, outer]
+    }
+
+    fn wedge_pass(
+        &self,
+        label: &str,
+        group: &Silhouettes,
+        to: &WedgeTarget,
+        met: &mut Met,
+    ) -> RenderPass {
         let construction = construction(self.params);
         let mut draws = Vec::new();
         for side in &self.light.sides {
             for edge in group.edges.iter().filter(|e| e.has_plane()) {
                 let parts = Wedge::of_edge(construction, &side.area, edge.ends, &mut met.wedges);
                 for part in parts {
-                    let area = WedgeArea::new(
-                        self.view,
-                        construction,
-                        &side.area,
-                        part.edge,
-                        &mut met.areas,
-                    );
-                    draws.extend(self.wedge(side, &part, HardPlane(edge.normal), &area));
+                    let (view, light, areas) = (self.view, &side.area, &mut met.areas);
+                    let area = match to.half {
+                        None => WedgeArea::new(view, construction, light, part.edge, areas),
+                        Some(h) => WedgeArea::half(view, construction, light, part.edge, h, areas),
+                    };
+                    draws.extend(self.wedge(side, &part, HardPlane(edge.normal), &area, to));
                 }
             }
         }
         let clear = LoadOp::Clear([0.0; 4]);
+        let buffers = to.buffers.iter();
         RenderPass {
-            label,
-            color: self.buffers.split.map(|t| attachment(t, clear)).to_vec(),
+            label: label.to_owned(),
+            color: buffers.map(|t| attachment(*t, clear)).collect(),
             depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
             draws,
         }
@@ -345,23 +409,36 @@ impl Volumes<'_> {
         part: &Wedge,
         plane: HardPlane,
         area: &WedgeArea,
+        to: &WedgeTarget,
     ) -> Vec<Draw> {
         let shader = SplitPenumbra {
             light: side.projector,
             edge: side.edge(part.edge),
             plane,
             tables: self.tables.map(|(tables, _)| tables).unwrap_or_default(),
+            halves: match to.half {
+                None => Halves::Both,
+                Some(Half::Inner) => Halves::Inner,
+                Some(Half::Outer) => Halves::Outer,
+            },
         };
         let lookups = self.tables.iter().flat_map(|(_, textures)| textures);
         let textures = [self.positions.texture].into_iter().chain(lookups.copied());
         let pipeline = WedgePipeline {
-            label: "penumbra",
+            label: COVERAGE_DRAW,
             fragment: shader.stage(),
-            targets: vec![ColorTargetState::ADDITIVE; 2],
+            targets: vec![ColorTargetState::ADDITIVE; to.buffers.len()],
             textures: textures.map(binding).collect(),
             skip: self.params.get(SKIP.name) != "off",
             note: Note::TakeAndRemove,
         };
         area.draws(self.view, pipeline)
     }
+}
+
+/// Where wedges are drawn to, and what of them.
+struct WedgeTarget {
+    buffers: Vec<TextureId>,
+    /// Whole wedges where there is none.
+    half: Option<Half>,
 }

@@ -180,21 +180,24 @@ impl SphereLight {
             #[inline(always)]
             |i| from[i] / distance,
         );
-        let size = if self.seen {
+        // Up to where the sphere's surface is seen: its horizon, or the disc.
+        let (size, horizon) = if self.seen {
             let sine2 = F32::splat(l, radius * radius) / (distance * distance);
-            F32::splat(l, radius) / (one - sine2).sqrt()
+            let size = F32::splat(l, radius) / (one - sine2).sqrt();
+            (size, sine2 * distance / size)
         } else {
-            F32::splat(l, radius)
+            (F32::splat(l, radius), zero)
         };
         let [u, v] = across(l, towards);
         let eye = distance / size;
         let frame = [u, v, towards];
         let a = local(l, frame, size, &edge[0]);
         let b = local(l, frame, size, &edge[1]);
-        // What is behind the disc's plane hides nothing of it.
+        // What is behind that hides nothing of it.
         let [za, zb] = [a[2], b[2]];
-        let cut = za / (za - zb);
-        let (behind_a, behind_b) = (za.lt(zero), zb.lt(zero));
+        let [ha, hb] = [za - horizon, zb - horizon];
+        let cut = ha / (ha - hb);
+        let (behind_a, behind_b) = (ha.lt(zero), hb.lt(zero));
         Projected {
             ends: [
                 [a[0] * eye, a[1] * eye, eye - za],

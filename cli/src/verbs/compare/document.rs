@@ -6,7 +6,9 @@ use serde::Serialize;
 
 use super::job::{Entry, Job};
 use super::measure::{Comparison, Measured};
-use crate::output::json::{FileDocument, Object, WarningDocument, worker_threads};
+use crate::output::json::{
+    FileDocument, Object, WarningDocument, WedgeWorkDocument, worker_threads,
+};
 use crate::output::tables;
 
 #[derive(Serialize)]
@@ -51,6 +53,7 @@ struct ResultDocument {
     time_ms: f64,
     bytes: u64,
     shaded_fragments: u64,
+    wedge_work: Option<WedgeWorkDocument>,
     pixels: PixelDocument,
     hash: HashDocument,
     warnings: Vec<WarningDocument>,
@@ -138,6 +141,7 @@ impl ResultDocument {
             time_ms: done.frame_ms,
             bytes: tables::frame_bytes(&done.report),
             shaded_fragments: tables::frame_counters(&done.report).fragment_shader_invocations,
+            wedge_work: WedgeWorkDocument::of(&done.report),
             pixels: PixelDocument {
                 compared: pixels(score.visibility.all),
                 umbra: pixels(region(umbra)),

@@ -3,6 +3,7 @@
 
 use gnomon_pipeline::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::oracle::area::LightRegion;
+use gnomon_pipeline::wedge_work::WedgeWork;
 
 use super::measure::Measured;
 use crate::output::numbers::{self, count, error};
@@ -37,6 +38,9 @@ const FIGURES: &[Figure] = &[
     }),
     ("shaded fragments", |m| {
         count(tables::frame_counters(&m.done.report).fragment_shader_invocations)
+    }),
+    ("  over penumbra pairs", |m| {
+        WedgeWork::of(&m.done.report).map_or(NONE.to_owned(), |w| format!("{:.2}", w.ratio()))
     }),
 ];
 

@@ -7,11 +7,15 @@
 
 use glam::DVec3;
 
+use super::outlines::pieces;
+use crate::adjacency::EdgeAdjacency;
 use crate::light::HardLight;
-use crate::mesh::narrow;
+use crate::mesh::{Mesh, narrow};
 use crate::scene::{Camera, Scene};
+use crate::silhouette::{Orientation, Silhouette, light_facing};
 use crate::technique::{Params, TechniqueError};
 use crate::techniques::casters::{self, Examined};
+use crate::volume::ShadowVolume;
 use crate::wedge::hard_plane;
 use crate::winding::volume_winding;
 
@@ -67,20 +71,54 @@ impl<'a> Casters<'a> {
     /// Silhouettes seen from `centre`, caster by caster.
     pub(crate) fn each(&self, centre: DVec3) -> Vec<Silhouettes> {
         let light = HardLight::Point(centre);
-        let eye = beside_eye(self.camera);
         let of = |examined: &Examined<'_>| {
             let mesh = &examined.object.mesh;
-            let silhouette = examined.silhouette(light);
-            let point = |i: u32| mesh.position(i);
-            let edges = silhouette.edges.iter();
-            Silhouettes {
-                edges: edges
-                    .map(|&[a, b]| SoftEdge::new([point(a), point(b)], centre, eye))
-                    .collect(),
-                eye_count: volume_winding(&examined.caster.volume(mesh, light), eye),
-            }
+            let volume = examined.caster.volume(mesh, light);
+            self.of_mesh(mesh, &examined.silhouette(light), &volume, centre)
         };
         self.examined.iter().map(of).collect()
+    }
+
+    /// Silhouettes seen from `centre`, outline by outline with its holes, caster
+    /// after caster.
+    pub(crate) fn outlines(&self, centre: DVec3) -> Vec<Silhouettes> {
+        let light = HardLight::Point(centre);
+        let of_piece = |piece: Mesh| {
+            let adjacency = EdgeAdjacency::new(piece.triangles());
+            let orientation = Orientation::generalised(&light_facing(&piece, light));
+            let silhouette = Silhouette::new(&piece, &adjacency, &orientation);
+            let volume = ShadowVolume::generalised(&piece, &adjacency, light);
+            self.of_mesh(&piece, &silhouette, &volume, centre)
+        };
+        let pieces = self.examined.iter().flat_map(|examined| {
+            let adjacency = examined.caster.adjacency();
+            pieces(
+                &examined.object.mesh,
+                adjacency,
+                &examined.orientation(light),
+            )
+        });
+        let all = pieces.map(of_piece);
+        all.filter(|s| !s.edges.is_empty() || s.eye_count != 0)
+            .collect()
+    }
+
+    fn of_mesh(
+        &self,
+        mesh: &Mesh,
+        silhouette: &Silhouette,
+        volume: &ShadowVolume,
+        centre: DVec3,
+    ) -> Silhouettes {
+        let eye = beside_eye(self.camera);
+        let point = |i: u32| mesh.position(i);
+        let edges = silhouette.edges.iter();
+        Silhouettes {
+            edges: edges
+                .map(|&[a, b]| SoftEdge::new([point(a), point(b)], centre, eye))
+                .collect(),
+            eye_count: volume_winding(volume, eye),
+        }
     }
 }
 

@@ -4,8 +4,11 @@
 pub(super) mod count;
 pub(super) mod covering;
 pub(super) mod edges;
+pub(super) mod halves;
+pub(super) mod horizon;
 pub(super) mod light;
 pub(super) mod light_image;
+mod outlines;
 pub(super) mod split_tables;
 pub(super) mod table;
 pub(super) mod wedges;

@@ -22,7 +22,7 @@ use super::super::passes::{self, View};
 use super::super::visibility::{full_screen, homogeneous, homogeneous_draw};
 use crate::area_light::AreaLight;
 use crate::technique::{Params, Warning};
-use crate::wedge::{Construction, Wedge, WedgeStatistics};
+use crate::wedge::{Construction, Wedge, WedgeMesh, WedgeStatistics};
 
 /// By how much the light, and the edge, are enlarged.
 const LARGER_LIGHT: f64 = 2e-4;
@@ -41,6 +41,8 @@ pub(crate) struct WedgeArea {
 pub(crate) struct AreaStatistics {
     /// Wedges drawn as the whole screen, because there is no one mesh for them.
     pub(crate) whole_screen: u64,
+    /// Wedges drawn whole for one of their halves, because nothing splits them.
+    pub(crate) unsplit: u64,
 }
 
 /// What is done with the pixels of a wedge.
@@ -76,24 +78,33 @@ impl WedgeArea {
     ) -> Self {
         let larger = enlarged(light);
         let ends = enlarged_edge(light.centre(), ends);
-        let wedges = Wedge::of_edge(construction, &larger, ends, &mut WedgeStatistics::default());
+        let mut met = WedgeStatistics::default();
+        let wedges = Wedge::of_edge(construction, &larger, ends, &mut met);
         let meshes: Vec<_> = wedges.iter().map(|w| w.volume.mesh()).collect();
-        match (&meshes[..], &wedges[..]) {
-            ([mesh], [wedge]) if !mesh.triangles.is_empty() => Self {
-                mesh: Some((
-                    Arc::new(homogeneous(view, &mesh.vertices)),
-                    mesh.triangles.clone(),
-                )),
-                around_eye: wedge.volume.depth(view.camera().eye) > -view.camera().near,
-            },
-            _ => {
-                statistics.whole_screen += 1;
-                Self {
-                    mesh: None,
-                    around_eye: true,
-                }
+        let one = match (&meshes[..], &wedges[..]) {
+            // A half-space at the enlarged light holds less, not more.
+            ([mesh], [wedge]) if met.touching_light == 0 => {
+                Self::of_mesh(view, mesh, wedge.volume.depth(view.camera().eye))
             }
-        }
+            _ => None,
+        };
+        one.unwrap_or_else(|| {
+            statistics.whole_screen += 1;
+            Self {
+                mesh: None,
+                around_eye: true,
+            }
+        })
+    }
+
+    /// The pixels of a closed mesh in which the eye is `depth` deep, negative
+    /// outside; `None` without triangles.
+    pub(crate) fn of_mesh(view: &View, mesh: &WedgeMesh, depth: f64) -> Option<Self> {
+        let triangles = mesh.triangles.clone();
+        (!triangles.is_empty()).then(|| Self {
+            mesh: Some((Arc::new(homogeneous(view, &mesh.vertices)), triangles)),
+            around_eye: depth > -view.camera().near,
+        })
     }
 
     /// Draws over the area, in order.
@@ -217,7 +228,8 @@ fn shade_back(skip: bool, noted: bool, note: Note) -> DepthStencilState {
     }
 }
 
-fn enlarged(light: &AreaLight) -> AreaLight {
+/// The light, a little larger.
+pub(super) fn enlarged(light: &AreaLight) -> AreaLight {
     let mut larger = light.clone();
     match &mut larger {
         AreaLight::Polygon {
@@ -237,9 +249,13 @@ fn enlarged(light: &AreaLight) -> AreaLight {
 /// The edge a little nearer to the light and longer at both ends.
 fn enlarged_edge(centre: DVec3, [a, b]: [DVec3; 2]) -> [DVec3; 2] {
     let nearer = |e: DVec3| e + (centre - e) * LARGER_EDGE;
-    let (a, b) = (nearer(a), nearer(b));
-    let longer = (b - a) * LARGER_EDGE;
-    [a - longer, b + longer]
+    longer([nearer(a), nearer(b)])
+}
+
+/// The edge a little longer at both ends.
+pub(super) fn longer([a, b]: [DVec3; 2]) -> [DVec3; 2] {
+    let more = (b - a) * LARGER_EDGE;
+    [a - more, b + more]
 }
 
 /// The construction that parameter `wedge` names.
@@ -271,7 +287,12 @@ pub(crate) fn warnings_of(
         (
             "wedges-whole-screen",
             areas.whole_screen,
-            "wedges are no single mesh, and drawn over the whole screen",
+            "wedges have no one mesh that is sure to hold them, and are drawn over the whole screen",
+        ),
+        (
+            "wedges-unsplit",
+            areas.unsplit,
+            "wedges are drawn whole for one of their halves, because nothing splits them",
         ),
     ];
     let label = label.to_owned();

@@ -1,0 +1,106 @@
+//! Visibility limited to the light before a facet's plane, against the oracle.
+
+use gnomon_pipeline::comparison::{Reference, ReferenceKind};
+use gnomon_pipeline::light::{Light, LightShape};
+use gnomon_pipeline::metrics::visibility::VisibilityError;
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{Scene, builtin};
+use gnomon_pipeline::technique::{Params, find};
+
+const SIZE: [u32; 2] = [120, 80];
+const BOTH: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
+
+fn picture(scene: &Scene, name: &str, set: &[&str]) -> Rendered {
+    let technique = find(name).unwrap();
+    let params = Params::parse(technique, set).unwrap();
+    let settings = RenderSettings {
+        size: SIZE,
+        ..RenderSettings::default()
+    };
+    render(scene, technique, &params, &settings).unwrap()
+}
+
+fn rmse(scene: &Scene, name: &str, set: &[&str]) -> f64 {
+    let done = picture(scene, name, set);
+    let truth = Reference::new(scene, 0, SIZE, ReferenceKind::Exact, None, &|| ()).unwrap();
+    let under = truth.under(&done.depth).unwrap();
+    let pairs = done.visibility.iter().zip(&under.truth.values);
+    let seen: Vec<f32> = pairs
+        .map(|(v, t)| if t.is_nan() { f32::NAN } else { *v })
+        .collect();
+    let error = VisibilityError::measure(&under.truth, SIZE, &seen).unwrap();
+    println!("{} {name} {set:?}: {:?}", scene.name, error.all);
+    error.all.unwrap().rmse
+}
+
+#[test]
+fn curved_casters_are_several_times_nearer_to_the_truth() {
+    let mut scene = builtin::build("peer-a").unwrap();
+    for name in BOTH {
+        let off = rmse(&scene, name, &[]);
+        let on = rmse(&scene, name, &["horizon=on"]);
+        assert!(on < off / 5.0, "{name}: {on} of {off}");
+    }
+    let LightShape::Rectangle { centre, .. } = scene.lights[0].shape else {
+        unreachable!()
+    };
+    let disc = LightShape::Disc {
+        centre,
+        normal: glam::DVec3::Y,
+        radius: 0.6,
+    };
+    let colour = [1.0; 3];
+    scene.lights = vec![Light {
+        shape: disc,
+        colour,
+    }];
+    let [off, on] = ["off", "on"].map(|h| rmse(&scene, BOTH[0], &[&format!("horizon={h}")]));
+    assert!(on < off / 5.0, "disc: {on} of {off}");
+}
+
+/// Nothing gets brighter, and nothing changes on what casts no shadow.
+#[test]
+fn it_only_limits_and_only_casters() {
+    for name in ["demo", "creature", "columns", "adversarial-offset"] {
+        let scene = builtin::build(name).unwrap();
+        let off = picture(&scene, BOTH[0], &[]);
+        let on = picture(&scene, BOTH[0], &["horizon=on"]);
+        let pairs = || off.visibility.iter().zip(&on.visibility);
+        assert!(pairs().all(|(a, b)| b <= a || a.is_nan()), "{name}");
+        assert!(pairs().any(|(a, b)| b < a), "{name}");
+        let mut receivers = scene.clone();
+        receivers.objects.iter_mut().for_each(|o| o.casts = false);
+        let [a, b] =
+            ["off", "on"].map(|h| picture(&receivers, BOTH[0], &[&format!("horizon={h}")]));
+        assert_eq!(a.visibility_hash(), b.visibility_hash(), "{name}");
+        let unskipped = picture(&scene, BOTH[0], &["horizon=on", "skip=off"]);
+        assert_eq!(unskipped.visibility_hash(), on.visibility_hash(), "{name}");
+        assert!(rmse(&scene, BOTH[0], &["horizon=on"]) < rmse(&scene, BOTH[0], &[]));
+    }
+}
+
+#[test]
+fn lights_that_it_is_not_made_for_are_refused() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    let refused = |scene: &Scene, set: &[&str]| {
+        let technique = find(BOTH[0]).unwrap();
+        let params = Params::parse(technique, set).unwrap();
+        let error = render(scene, technique, &params, &RenderSettings::default()).unwrap_err();
+        error.to_string()
+    };
+    let image = refused(&scene, &["horizon=on", "light-image=fire"]);
+    assert!(
+        image.contains("light 0") && image.contains("one colour"),
+        "{image}"
+    );
+    let centre = glam::DVec3::new(1.6, 4.0, 1.0);
+    scene.lights[0].shape = LightShape::Sphere {
+        centre,
+        radius: 0.5,
+    };
+    let sphere = refused(&scene, &["horizon=on"]);
+    assert!(
+        sphere.contains("sphere") && sphere.contains("horizon"),
+        "{sphere}"
+    );
+}

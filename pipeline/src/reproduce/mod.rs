@@ -15,6 +15,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod equal_error;
 mod finding;
 mod judge;
 mod lab;

@@ -1,6 +1,6 @@
 //! Paper III: how the cost grows with pixels, lights and objects.
 
-use super::lab::{counters, invocations, pass_time, ratio};
+use super::lab::{counters, invocations, pass_time, ratio, written};
 use super::paper3::TECHNIQUE;
 use super::scenes::{cylinders, lights, with_lights_scaled};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
@@ -16,25 +16,31 @@ fn shaded(done: &Rendered) -> u64 {
 
 pub(super) fn resolution(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let scene = lab.scene("creature")?;
-    let repeat = lab.settings().repeat;
-    let render = |side: u32| lab.rendered(&scene, TECHNIQUE, &[], [side; 2], repeat);
+    let render = |side: u32| lab.timed_at(&scene, TECHNIQUE, &[], [side; 2]);
     let done = [render(100)?, render(256)?, render(512)?];
     let time = done.each_ref().map(|d| pass_time(d, &SHADOW));
     let pixels = done.each_ref().map(shaded);
-    // 26.2 and 4 times the pixels took 21.4 and 3.6 times the time.
+    let slower = |published: f64, pixels: f64| Theirs::Effect {
+        low: published,
+        high: published,
+        neutral: pixels,
+        slack: super::SLACK,
+    };
     Ok(Finding {
         scene: "creature (for the fairy), 100x100, 256x256 and 512x512".to_owned(),
-        counted: "time of the shadow passes, and shader invocations of wedges".to_owned(),
+        counted: "time of the shadow passes, and shader invocations of wedges; the direction is \
+            less than the growth of pixels"
+            .to_owned(),
         measures: vec![
             Measure::new(
-                "time, 512 over 100, less than 26.2x",
-                Theirs::Within(26.2 / 3.0, 26.2),
+                "time, 512 over 100 (26.2x the pixels)",
+                slower(3.0 / 0.14, 26.2144),
                 time[2] / time[0],
                 Unit::Ratio,
             ),
             Measure::new(
-                "time, 512 over 256, less than 4x",
-                Theirs::Within(4.0 / 3.0, 4.0),
+                "time, 512 over 256 (4x the pixels)",
+                slower(0.51 / 0.14, 4.0),
                 time[2] / time[1],
                 Unit::Ratio,
             ),
@@ -45,10 +51,23 @@ pub(super) fn resolution(lab: &mut Lab) -> Result<Finding, ReproduceError> {
                 Unit::Ratio,
             ),
         ],
-        reason: "On a busy machine short frames vary by more than the little that is claimed."
+        reason: "Each wedge is a draw of its own with a cost of its own, whatever the size of \
+            the picture; small pictures are mostly that."
             .to_owned(),
         charts: Vec::new(),
     })
+}
+
+/// Pixels on which paper III's shader runs: those of front faces of wedges that pass
+/// the depth test, which a draw of its own notes; all of them where the eye is in a
+/// wedge, which has no such draw.
+pub(super) fn behind_front(done: &Rendered) -> u64 {
+    let passes = done.report.passes.iter();
+    let draws: Vec<_> = passes.flat_map(|p| &p.draws).collect();
+    let alone = |k: usize| k == 0 || draws[k - 1].label != "note";
+    let around_eye = (0..draws.len()).filter(|k| draws[*k].label == "penumbra" && alone(*k));
+    let around_eye = around_eye.map(|k| draws[k].counters.fragment_shader_invocations);
+    written(done, "note") + around_eye.sum::<u64>()
 }
 
 pub(super) fn light_side(lab: &mut Lab) -> Result<Finding, ReproduceError> {
@@ -56,19 +75,17 @@ pub(super) fn light_side(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     for name in ["creature", "spheres"] {
         let scene = lab.scene(name)?;
         let half = with_lights_scaled(scene.clone(), 0.5);
-        // What the paper had: wedges round spheres, all of whose pixels are shaded.
-        let theirs = ["wedge=paper3", "skip=off"];
-        let [whole, halved] = [&scene, &half].map(|s| lab.timed(s, TECHNIQUE, &theirs));
+        let [whole, halved] = [&scene, &half].map(|s| lab.timed(s, TECHNIQUE, &["wedge=paper3"]));
         let (whole, halved) = (whole?, halved?);
         measures.push(Measure::new(
-            format!("{name}: pixels of wedges, whole over half"),
-            Theirs::ratio(2.0, 4.0),
-            ratio(shaded(&whole), shaded(&halved)),
+            format!("{name}: pixels behind front faces of wedges, whole over half"),
+            Theirs::AtLeast(2.0),
+            ratio(behind_front(&whole), behind_front(&halved)),
             Unit::Ratio,
         ));
         measures.push(Measure::beside(
             format!("{name}: time of shadow passes, whole over half"),
-            "more than 2x (frame)",
+            "> 2x (frame)",
             pass_time(&whole, &SHADOW) / pass_time(&halved, &SHADOW),
             Unit::Ratio,
         ));
@@ -82,8 +99,9 @@ pub(super) fn light_side(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     }
     Ok(Finding {
         scene: lab.describe("creature and spheres, light of side 1 and 1/2"),
-        counted: "shader invocations of wedges (paper III's, nothing skipped), and time of the \
-            shadow passes"
+        counted: "pixels whose surface is behind a front face of paper III's wedges, which its \
+            shader has to look at, shader invocations in exact wedges, and time of the shadow \
+            passes"
             .to_owned(),
         measures,
         reason: "A wedge is as wide as the light and as long as its edge's shadow: half the \
@@ -115,7 +133,7 @@ fn cost(lab: &Lab, scene: &Scene) -> Result<Cost, ReproduceError> {
 pub(super) fn linear(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let objects: Vec<Cost> = [2, 4, 8, 16]
         .into_iter()
-        .map(|n| cost(lab, &cylinders(n, 1.0)?))
+        .map(|n| cost(lab, &cylinders(n, 4.0)?))
         .collect::<Result<_, _>>()?;
     let by_lights: Vec<Cost> = [1, 2, 4]
         .into_iter()
@@ -137,7 +155,7 @@ pub(super) fn linear(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let [one, four] = [&by_lights[0], &by_lights[2]];
     let per_pixel = |c: &Cost| c.time / c.pixels as f64;
     let points = |costs: &[Cost]| {
-        let point = |c: &Cost| [c.pixels as f64 / 1e6, c.time];
+        let point = |c: &Cost| [c.pixels as f64 / 1e3, c.time];
         costs.iter().map(point).collect()
     };
     Ok(Finding {
@@ -184,7 +202,7 @@ pub(super) fn linear(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         charts: vec![Chart {
             name: "paper3-linear".to_owned(),
             title: "Time of shadow passes against wedge pixels".to_owned(),
-            x: Axis::linear("million wedge pixels shaded"),
+            x: Axis::linear("thousand wedge pixels shaded"),
             y: Axis::linear("milliseconds of the shadow passes"),
             series: vec![
                 Series::line("2 to 16 objects", points(&objects)),

@@ -102,7 +102,7 @@ pub(super) fn folded_cone(folds: u32) -> Result<Mesh, ReproduceError> {
     let rim = 2 * folds;
     let at = |k: u32| {
         let angle = std::f64::consts::TAU * f64::from(k) / f64::from(rim);
-        let y = if k % 2 == 0 { 4.0 } else { -4.0 };
+        let y = if k.is_multiple_of(2) { 4.0 } else { -4.0 };
         DVec3::new(libm::cos(angle), y, libm::sin(angle))
     };
     let positions = std::iter::once(DVec3::ZERO).chain((0..rim).map(at));

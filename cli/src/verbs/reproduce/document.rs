@@ -25,6 +25,8 @@ struct ClaimDocument<'a> {
     verdict: char,
     /// `null` for what is quoted or only listed.
     finding: Option<FindingDocument<'a>>,
+    /// What measuring took.
+    time_ms: f64,
     files: &'a [FileDocument],
 }
 
@@ -76,6 +78,7 @@ impl<'a> ClaimDocument<'a> {
             statement: claim.statement,
             verdict: claim.verdict.letter(),
             finding: outcome.finding.as_ref().map(FindingDocument::new),
+            time_ms: outcome.time.as_secs_f64() * 1e3,
             files: &outcome.files,
         }
     }

@@ -4,7 +4,7 @@ mod document;
 mod text;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use gnomon_pipeline::chart::Chart;
 use gnomon_pipeline::oracle::cache::OracleCache;
@@ -26,6 +26,8 @@ struct Outcome {
     finding: Option<Finding>,
     /// Plots that were written.
     files: Vec<FileDocument>,
+    /// What measuring took.
+    time: Duration,
 }
 
 /// Lists or measures, prints, and writes plots.
@@ -68,13 +70,16 @@ fn measured(
     let mut outcomes = Vec::new();
     for claim in chosen {
         progress.doing(claim.id);
+        let start = Instant::now();
         let finding = claim.measure(&mut lab)?;
+        let time = start.elapsed();
         let charts = finding.iter().flat_map(|f| &f.charts);
         let files = write_plots(&args.out_dir, charts)?;
         outcomes.push(Outcome {
             claim,
             finding,
             files,
+            time,
         });
         progress.step();
     }
@@ -87,6 +92,7 @@ impl Outcome {
             claim,
             finding: None,
             files: Vec::new(),
+            time: Duration::ZERO,
         }
     }
 }

@@ -141,8 +141,11 @@ pub(super) fn summary(outcomes: &[Outcome], settings: &LabSettings, time: Durati
     let quoted = outcomes.iter().filter(|o| o.finding.is_none()).count();
     let [width, height] = settings.size;
     let mut text = format!(
-        "{} claims at {width}x{height}, {} threads, {}, in {}:\n",
-        outcomes.len(),
+        "{} at {width}x{height}, {} threads, {}, in {}:\n",
+        match outcomes.len() {
+            1 => "One claim".to_owned(),
+            n => format!("{n} claims"),
+        },
         worker_threads(settings.gpu.threads),
         settings.gpu.simd,
         numbers::milliseconds(time.as_secs_f64() * 1e3),

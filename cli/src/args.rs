@@ -25,6 +25,8 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
+    /// Measure the papers' quantitative claims again, theirs beside ours
+    Reproduce(Box<ReproduceArgs>),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -129,6 +131,40 @@ pub(crate) struct CompareArgs {
 const COMPARE_HELP: &str = "\
 Example: gnomon compare cylinder \
 --techniques shadow-volumes,sampled-shadow-volumes:samples=16,sampled-shadow-volumes:samples=256
+
+Exit codes: 0 fine, 2 bad input.";
+
+/// Flags of `reproduce`.
+#[derive(Debug, Args)]
+#[command(after_help = REPRODUCE_HELP)]
+pub(crate) struct ReproduceArgs {
+    /// The claim, by its name; all of them without one
+    pub(crate) claim: Option<String>,
+    /// List the claims and measure nothing
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Size of pictures in pixels, where a claim does not fix its own
+    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "512x384")]
+    pub(crate) size: [u32; 2],
+    /// Folder for plots, CLAIM.svg and CLAIM.png, and for the truth, oracle-cache/
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out_dir: PathBuf,
+    /// Frames to time where times are compared; the least time counts
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    pub(crate) repeat: u32,
+    /// How to execute.
+    #[command(flatten)]
+    pub(crate) gpu: GpuArgs,
+    /// Print one JSON document on stdout, the summary on stderr
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+const REPRODUCE_HELP: &str = "\
+Letters say how a claim can be checked: A exact arithmetic, B a ratio of counters,
+C direction and rough ratio of times, D bound to hardware of its time, quoted only.
+
+A claim that does not hold is a result, not an error.
 
 Exit codes: 0 fine, 2 bad input.";
 

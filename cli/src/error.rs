@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use gnomon_pipeline::comparison::CompareError;
 use gnomon_pipeline::metrics::MetricError;
 use gnomon_pipeline::render::RenderError;
+use gnomon_pipeline::reproduce::{ReproduceError, UnknownClaim};
 use gnomon_pipeline::scene::SceneError;
 use gnomon_pipeline::technique::TechniqueError;
 use thiserror::Error;
@@ -27,6 +28,12 @@ pub(crate) enum CliError {
     /// The pictures cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
+    /// There is no such claim.
+    #[error(transparent)]
+    Claim(#[from] UnknownClaim),
+    /// A claim cannot be measured.
+    #[error(transparent)]
+    Reproduce(#[from] ReproduceError),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {

@@ -30,6 +30,7 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Verb::Compare(args) => verbs::compare::run(args),
         Verb::Demo(args) => verbs::demo::run(args),
         Verb::Render(args) => verbs::render::run(args),
+        Verb::Reproduce(args) => verbs::reproduce::run(args),
         Verb::Scenes(args) => verbs::scenes::run(args),
         Verb::Techniques(args) => verbs::techniques::run(args),
     }

@@ -48,6 +48,7 @@
 pub mod adjacency;
 pub mod area_light;
 pub mod caster;
+pub mod chart;
 pub mod comparison;
 pub mod coverage;
 pub mod error;
@@ -59,6 +60,7 @@ pub mod metrics;
 pub mod obj;
 pub mod oracle;
 pub mod render;
+pub mod reproduce;
 pub mod scene;
 pub mod shape;
 pub mod silhouette;

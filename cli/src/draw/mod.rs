@@ -5,6 +5,7 @@ pub(crate) mod diverging;
 mod font;
 mod grid;
 mod legend;
+pub(crate) mod plot;
 mod projection;
 mod ramp;
 

@@ -1,0 +1,250 @@
+//! From a chart to lines, dots, bars and text in pixels.
+
+use gnomon_pipeline::chart::{Chart, Mark, Series};
+
+use super::axis::{Range, tick_label};
+use crate::draw::font;
+
+/// Width and height of the area between the axes, in pixels.
+const AREA: [f32; 2] = [720.0, 440.0];
+/// Left, top, bottom, and right of the area.
+const LEFT: f32 = 92.0;
+const TOP: f32 = 74.0;
+const BOTTOM: f32 = 66.0;
+const GAP: f32 = 24.0;
+/// Pixels of a font pixel.
+pub(super) const TEXT_SCALE: u32 = 2;
+const LINE_HEIGHT: f32 = 26.0;
+
+const INK: [u8; 3] = [40, 40, 40];
+const GRID: [u8; 3] = [226, 226, 226];
+const PAPER: [u8; 3] = [255, 255, 255];
+/// Told apart also by people who see few colours (Okabe and Ito), dark enough on
+/// white.
+const COLOURS: [[u8; 3]; 7] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [86, 180, 233],
+    [230, 159, 0],
+    [90, 90, 90],
+];
+
+/// What is drawn, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Item {
+    /// A line through points.
+    Line {
+        points: Vec<[f32; 2]>,
+        colour: [u8; 3],
+        width: f32,
+        dashed: bool,
+    },
+    /// A filled disc.
+    Dot {
+        at: [f32; 2],
+        radius: f32,
+        colour: [u8; 3],
+    },
+    /// A filled rectangle.
+    Bar {
+        at: [f32; 2],
+        size: [f32; 2],
+        colour: [u8; 3],
+    },
+    /// Text, its left, middle or right end at `at`, which is at the top.
+    Text {
+        at: [f32; 2],
+        anchor: Anchor,
+        text: String,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A chart as items on a canvas.
+pub(super) struct Layout {
+    pub(super) size: [u32; 2],
+    pub(super) paper: [u8; 3],
+    pub(super) ink: [u8; 3],
+    pub(super) title: String,
+    pub(super) items: Vec<Item>,
+}
+
+/// Width of text in pixels, in the bitmap font.
+pub(super) fn text_width(text: &str) -> f32 {
+    (font::text_width(text) * TEXT_SCALE) as f32
+}
+
+impl Layout {
+    pub(super) fn new(chart: &Chart) -> Self {
+        let values = |k: usize| {
+            chart
+                .series
+                .iter()
+                .flat_map(|s| &s.points)
+                .map(move |p| p[k])
+        };
+        let plot = Plot {
+            x: Range::new(chart.x.scale, values(0)),
+            y: Range::new(chart.y.scale, values(1)),
+        };
+        let mut items = Vec::new();
+        plot.grid(chart, &mut items);
+        let mut labels = Vec::new();
+        for (k, series) in chart.series.iter().enumerate() {
+            let hidden = plot.series(series, COLOURS[k % COLOURS.len()], &mut items);
+            labels.push(match hidden {
+                0 => series.label.clone(),
+                n => format!("{} ({n} not shown)", series.label),
+            });
+        }
+        let legend_width = legend(chart, &labels, &mut items);
+        let width = LEFT + AREA[0] + GAP + legend_width + GAP;
+        let width = width.max(text_width(&chart.title) + 2.0 * GAP);
+        Self {
+            size: [width.ceil() as u32, (TOP + AREA[1] + BOTTOM) as u32],
+            paper: PAPER,
+            ink: INK,
+            title: chart.title.clone(),
+            items,
+        }
+    }
+}
+
+/// Both axes over the area.
+struct Plot {
+    x: Range,
+    y: Range,
+}
+
+impl Plot {
+    fn at_x(&self, x: f64) -> Option<f32> {
+        self.x.place(x).map(|t| LEFT + AREA[0] * t as f32)
+    }
+
+    fn at_y(&self, y: f64) -> Option<f32> {
+        self.y.place(y).map(|t| TOP + AREA[1] * (1.0 - t as f32))
+    }
+
+    fn at(&self, [x, y]: [f64; 2]) -> Option<[f32; 2]> {
+        Some([self.at_x(x)?, self.at_y(y)?])
+    }
+
+    /// Title, ticks with their lines and labels, axes.
+    fn grid(&self, chart: &Chart, items: &mut Vec<Item>) {
+        let [right, bottom] = [LEFT + AREA[0], TOP + AREA[1]];
+        let text = |at, anchor, text: &str| Item::Text {
+            at,
+            anchor,
+            text: text.to_owned(),
+        };
+        let line = |points: [[f32; 2]; 2], colour| Item::Line {
+            points: points.to_vec(),
+            colour,
+            width: 1.0,
+            dashed: false,
+        };
+        items.push(text([GAP, 12.0], Anchor::Start, &chart.title));
+        items.push(text([GAP, 44.0], Anchor::Start, &chart.y.label));
+        for (value, x) in self
+            .x
+            .ticks
+            .iter()
+            .filter_map(|v| Some((v, self.at_x(*v)?)))
+        {
+            items.push(line([[x, TOP], [x, bottom]], GRID));
+            items.push(text([x, bottom + 8.0], Anchor::Middle, &tick_label(*value)));
+        }
+        for (value, y) in self
+            .y
+            .ticks
+            .iter()
+            .filter_map(|v| Some((v, self.at_y(*v)?)))
+        {
+            items.push(line([[LEFT, y], [right, y]], GRID));
+            let at = [LEFT - 8.0, y - 7.0];
+            items.push(text(at, Anchor::End, &tick_label(*value)));
+        }
+        items.push(line([[LEFT, TOP], [LEFT, bottom]], INK));
+        items.push(line([[LEFT, bottom], [right, bottom]], INK));
+        let middle = [LEFT + 0.5 * AREA[0], bottom + 34.0];
+        items.push(text(middle, Anchor::Middle, &chart.x.label));
+    }
+
+    /// Draws a series; how many of its points cannot be shown.
+    fn series(&self, series: &Series, colour: [u8; 3], items: &mut Vec<Item>) -> usize {
+        let points: Vec<[f32; 2]> = series.points.iter().filter_map(|p| self.at(*p)).collect();
+        let bottom = TOP + AREA[1];
+        if matches!(series.mark, Mark::Line | Mark::Dashed) {
+            items.push(Item::Line {
+                points: points.clone(),
+                colour,
+                width: 2.5,
+                dashed: series.mark == Mark::Dashed,
+            });
+        }
+        for &at in &points {
+            match series.mark {
+                Mark::Line | Mark::Dots => items.push(Item::Dot {
+                    at,
+                    radius: 4.5,
+                    colour,
+                }),
+                Mark::Bars => items.push(Item::Bar {
+                    at: [at[0] - 3.0, at[1]],
+                    size: [6.0, bottom - at[1]],
+                    colour,
+                }),
+                Mark::Dashed => (),
+            }
+        }
+        series.points.len() - points.len()
+    }
+}
+
+/// A sample and the label of each series, to the right of the area; its width.
+fn legend(chart: &Chart, labels: &[String], items: &mut Vec<Item>) -> f32 {
+    const SAMPLE: f32 = 30.0;
+    let left = LEFT + AREA[0] + GAP;
+    let mut widest: f32 = 0.0;
+    for (k, (series, label)) in chart.series.iter().zip(labels).enumerate() {
+        let colour = COLOURS[k % COLOURS.len()];
+        let y = TOP + 8.0 + LINE_HEIGHT * k as f32;
+        let middle = [left + 0.5 * SAMPLE, y];
+        if matches!(series.mark, Mark::Line | Mark::Dashed) {
+            items.push(Item::Line {
+                points: vec![[left, y], [left + SAMPLE, y]],
+                colour,
+                width: 2.5,
+                dashed: series.mark == Mark::Dashed,
+            });
+        }
+        match series.mark {
+            Mark::Line | Mark::Dots => items.push(Item::Dot {
+                at: middle,
+                radius: 4.5,
+                colour,
+            }),
+            Mark::Bars => items.push(Item::Bar {
+                at: [middle[0] - 3.0, y - 7.0],
+                size: [6.0, 14.0],
+                colour,
+            }),
+            Mark::Dashed => (),
+        }
+        items.push(Item::Text {
+            at: [left + SAMPLE + 8.0, y - 7.0],
+            anchor: Anchor::Start,
+            text: label.clone(),
+        });
+        widest = widest.max(SAMPLE + 8.0 + text_width(label));
+    }
+    widest
+}

@@ -1,0 +1,375 @@
+//! What claims are measured with: renders, counters by pass, times, errors.
+
+use std::collections::BTreeMap;
+
+use gnomon_raster::{Counters, Gpu, GpuConfig, TextureDescriptor, TextureDimension, TextureId};
+use thiserror::Error;
+
+use crate::comparison::{CompareError, Reference, ReferenceKind};
+use crate::error::{MeshError, UnknownScene};
+use crate::metrics::MetricError;
+use crate::metrics::banding::Banding;
+use crate::metrics::visibility::{ErrorSummary, VisibilityError};
+use crate::oracle::area::VisibilityImage;
+use crate::oracle::cache::OracleCache;
+use crate::render::{RenderError, RenderSettings, Rendered, render};
+use crate::scene::{Scene, builtin};
+use crate::technique::{Frame, Params, Technique, TechniqueError, TextureSource, find};
+
+/// How claims are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LabSettings {
+    /// Width and height of pictures in pixels, where a claim does not fix its own.
+    pub size: [u32; 2],
+    /// How the emulated GPU executes.
+    pub gpu: GpuConfig,
+    /// Frames timed where times are compared; the least time counts.
+    pub repeat: u32,
+}
+
+impl Default for LabSettings {
+    fn default() -> Self {
+        Self {
+            size: [512, 384],
+            gpu: GpuConfig::default(),
+            repeat: 5,
+        }
+    }
+}
+
+/// Why a claim was not measured.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ReproduceError {
+    /// A built-in scene is missing.
+    #[error(transparent)]
+    Scene(#[from] UnknownScene),
+    /// A mesh cannot be made.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A technique or a parameter is wrong.
+    #[error(transparent)]
+    Technique(#[from] TechniqueError),
+    /// A scene cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// There is no truth to compare with.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// Pictures cannot be compared.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
+    /// The GPU refuses its settings or a frame.
+    #[error(transparent)]
+    Gpu(#[from] gnomon_raster::Error),
+}
+
+/// A place to measure in; keeps the truth about scenes it was asked for.
+pub struct Lab {
+    settings: LabSettings,
+    cache: Option<OracleCache>,
+    /// By the scene's name and the size.
+    references: BTreeMap<(String, [u32; 2]), Reference>,
+}
+
+/// A picture against the truth.
+pub(super) struct Scored {
+    /// Errors over all pixels.
+    pub(super) error: ErrorSummary,
+    /// Steps in penumbrae.
+    pub(super) banding: Banding,
+}
+
+impl Lab {
+    /// A lab; truths are read from and written to `cache`, if there is one.
+    pub fn new(settings: LabSettings, cache: Option<OracleCache>) -> Self {
+        Self {
+            settings,
+            cache,
+            references: BTreeMap::new(),
+        }
+    }
+
+    /// How it measures.
+    pub fn settings(&self) -> &LabSettings {
+        &self.settings
+    }
+
+    pub(super) fn size(&self) -> [u32; 2] {
+        self.settings.size
+    }
+
+    /// `name, WxH`, for [`super::Finding::scene`].
+    pub(super) fn describe(&self, what: &str) -> String {
+        let [width, height] = self.size();
+        format!("{what}, {width}x{height}")
+    }
+
+    pub(super) fn scene(&self, name: &str) -> Result<Scene, ReproduceError> {
+        Ok(builtin::build(name)?)
+    }
+
+    /// One frame, for counters.
+    pub(super) fn render(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+    ) -> Result<Rendered, ReproduceError> {
+        self.rendered(scene, technique, set, self.size())
+    }
+
+    /// Several frames, for times.
+    pub(super) fn timed(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+    ) -> Result<Rendered, ReproduceError> {
+        self.timed_at(scene, technique, set, self.size())
+    }
+
+    /// As [`Self::race`], for one run of any size.
+    pub(super) fn timed_at(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+        size: [u32; 2],
+    ) -> Result<Rendered, ReproduceError> {
+        self.least(self.settings.repeat, || {
+            self.rendered(scene, technique, set, size)
+        })
+    }
+
+    /// Techniques with settings, to be compared by time: frames in turn, so that what
+    /// else the machine does meets all of them; of each pass, and of the frame, the
+    /// least time, since that only makes times longer.
+    pub(super) fn race<const N: usize>(
+        &self,
+        scene: &Scene,
+        runs: [(&str, &[&str]); N],
+    ) -> Result<[Rendered; N], ReproduceError> {
+        let round = || -> Result<Vec<Rendered>, ReproduceError> {
+            let run = |(technique, set): &(&str, &[&str])| self.render(scene, technique, set);
+            runs.iter().map(run).collect()
+        };
+        let mut all = round()?;
+        for _ in 1..self.settings.repeat.max(1) {
+            for (least, again) in all.iter_mut().zip(round()?) {
+                keep_least(least, &again);
+            }
+        }
+        Ok(all.try_into().expect("a round has as many frames as runs"))
+    }
+
+    /// Several frames of one kind, with the least times.
+    pub(super) fn least(
+        &self,
+        repeat: u32,
+        frame: impl Fn() -> Result<Rendered, ReproduceError>,
+    ) -> Result<Rendered, ReproduceError> {
+        let mut least = frame()?;
+        for _ in 1..repeat.max(1) {
+            keep_least(&mut least, &frame()?);
+        }
+        Ok(least)
+    }
+
+    fn rendered(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+        size: [u32; 2],
+    ) -> Result<Rendered, ReproduceError> {
+        let (technique, params) = parsed(technique, set)?;
+        let settings = RenderSettings {
+            size,
+            gpu: self.settings.gpu,
+            repeat: 1,
+        };
+        Ok(render(scene, technique, &params, &settings)?)
+    }
+
+    /// A picture of light 0 of `scene` against the exact truth.
+    pub(super) fn score(
+        &mut self,
+        scene: &Scene,
+        done: &Rendered,
+    ) -> Result<Scored, ReproduceError> {
+        let truth = self.truth(scene, done)?;
+        let pairs = done.visibility.iter().zip(&truth.values);
+        let seen: Vec<f32> = pairs
+            .map(|(v, t)| if t.is_nan() { f32::NAN } else { *v })
+            .collect();
+        let all = VisibilityError::measure(&truth, done.size, &seen)?.all;
+        let edge = crate::comparison::BANDING_EDGE;
+        Ok(Scored {
+            error: all.unwrap_or(NOTHING_SEEN),
+            banding: Banding::measure(&truth, done.size, &seen, edge)?,
+        })
+    }
+
+    /// The exact truth under a picture's depth buffer.
+    pub(super) fn truth(
+        &mut self,
+        scene: &Scene,
+        done: &Rendered,
+    ) -> Result<VisibilityImage, ReproduceError> {
+        let key = (scene.name.clone(), done.size);
+        if !self.references.contains_key(&key) {
+            let cache = self.cache.as_ref();
+            let kind = ReferenceKind::Exact;
+            let found = Reference::new(scene, 0, done.size, kind, cache, &|| ())?;
+            self.references.insert(key.clone(), found);
+        }
+        Ok(self.references[&key].under(&done.depth)?.truth)
+    }
+
+    /// A frame that is built and not run, with all textures that it makes.
+    pub(super) fn textures(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+    ) -> Result<Vec<TextureDescriptor>, ReproduceError> {
+        let (technique, params) = parsed(technique, set)?;
+        let mut gpu = Gpu::new(self.settings.gpu)?;
+        let mut noted = Noted {
+            gpu: &mut gpu,
+            made: Vec::new(),
+        };
+        technique.frame(scene, self.size(), &params, &mut noted)?;
+        Ok(noted.made)
+    }
+
+    /// A frame and the GPU that can run it.
+    pub(super) fn frame(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+    ) -> Result<(Gpu, Frame), ReproduceError> {
+        let (technique, params) = parsed(technique, set)?;
+        let mut gpu = Gpu::new(self.settings.gpu)?;
+        let frame = technique.frame(scene, self.size(), &params, &mut gpu)?;
+        Ok((gpu, frame))
+    }
+}
+
+fn keep_least(least: &mut Rendered, again: &Rendered) {
+    least.frame_ms = least.frame_ms.min(again.frame_ms);
+    for (pass, other) in least.pass_ms.iter_mut().zip(&again.pass_ms) {
+        pass.1 = pass.1.min(other.1);
+    }
+}
+
+const NOTHING_SEEN: ErrorSummary = ErrorSummary {
+    pixels: 0,
+    rmse: f64::NAN,
+    max: f64::NAN,
+    p99: f64::NAN,
+    mean: f64::NAN,
+};
+
+/// A technique with its parameters.
+pub(super) fn parsed(
+    technique: &str,
+    set: &[&str],
+) -> Result<(&'static dyn Technique, Params), TechniqueError> {
+    let technique = find(technique)?;
+    Ok((technique, Params::parse(technique, set)?))
+}
+
+/// Passes on what is made, and notes it.
+struct Noted<'a> {
+    gpu: &'a mut Gpu,
+    made: Vec<TextureDescriptor>,
+}
+
+impl TextureSource for Noted<'_> {
+    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
+        self.made.push(desc.clone());
+        self.gpu.create_texture(desc)
+    }
+
+    fn write(
+        &mut self,
+        texture: TextureId,
+        image: gnomon_raster::Subresource,
+        texels: &[[f32; 4]],
+    ) -> Result<(), gnomon_raster::Error> {
+        self.gpu.write(texture, image, texels)
+    }
+}
+
+/// Bytes of a texture without mip levels.
+pub(super) fn bytes_of(texture: &TextureDescriptor) -> u64 {
+    let layers = match texture.dimension {
+        TextureDimension::Cube => 6,
+        _ => 1,
+    };
+    let texels: u64 = texture.size.iter().map(|s| u64::from(*s)).product();
+    layers * texels * texture.format.bytes()
+}
+
+/// Sum of the counters of all passes that are called one of `labels`; with several
+/// lights labels carry the light's number behind.
+pub(super) fn counters(done: &Rendered, labels: &[&str]) -> Counters {
+    let mut sum = Counters::default();
+    let passes = done.report.passes.iter();
+    for pass in passes.filter(|p| is_one_of(&p.label, labels)) {
+        sum.add(&pass.totals());
+    }
+    sum
+}
+
+/// Milliseconds of the same passes.
+pub(super) fn pass_time(done: &Rendered, labels: &[&str]) -> f64 {
+    let passes = done.pass_ms.iter();
+    passes
+        .filter(|(label, _)| is_one_of(label, labels))
+        .map(|(_, ms)| ms)
+        .sum()
+}
+
+fn is_one_of(label: &str, labels: &[&str]) -> bool {
+    let is_number = |rest: &str| {
+        rest.strip_prefix(' ')
+            .is_some_and(|n| n.parse::<u32>().is_ok())
+    };
+    let rests = labels.iter().filter_map(|l| label.strip_prefix(l));
+    rests
+        .into_iter()
+        .any(|rest| rest.is_empty() || is_number(rest))
+}
+
+/// Invocations of the draws that are called `draw`, in all passes.
+pub(super) fn invocations(done: &Rendered, draw: &str) -> u64 {
+    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
+    draws
+        .filter(|d| d.label == draw)
+        .map(|d| d.counters.fragment_shader_invocations)
+        .sum()
+}
+
+/// Fragments that draws called `draw` wrote, in all passes.
+pub(super) fn written(done: &Rendered, draw: &str) -> u64 {
+    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
+    draws
+        .filter(|d| d.label == draw)
+        .map(|d| d.counters.fragments.written)
+        .sum()
+}
+
+/// Draws that are called `draw`, in all passes.
+pub(super) fn draws(done: &Rendered, draw: &str) -> usize {
+    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
+    draws.filter(|d| d.label == draw).count()
+}
+
+/// A ratio of counts; not finite for nothing.
+pub(super) fn ratio(of: u64, to: u64) -> f64 {
+    of as f64 / to as f64
+}

@@ -1,0 +1,112 @@
+use super::*;
+
+fn lab() -> Lab {
+    let settings = LabSettings {
+        size: [96, 72],
+        repeat: 1,
+        ..LabSettings::default()
+    };
+    Lab::new(settings, None)
+}
+
+#[test]
+fn names_are_unique_and_say_their_paper() {
+    let mut names: Vec<&str> = claims().map(|c| c.id).collect();
+    assert!(names.len() >= 25);
+    for name in &names {
+        let safe = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        assert!(name.chars().all(safe), "{name}");
+    }
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), claims().count());
+    assert!(
+        find("paper2-culing")
+            .unwrap_err()
+            .to_string()
+            .contains("paper2-culling")
+    );
+}
+
+/// D is quoted, everything else is measured; every verdict occurs.
+#[test]
+fn what_is_quoted_is_not_measured() {
+    for claim in claims() {
+        assert_eq!(
+            claim.measuring.is_none(),
+            claim.verdict == Verdict::Quoted,
+            "{}",
+            claim.id
+        );
+        assert!(!claim.statement.is_empty() && !claim.source.is_empty());
+    }
+    let has = |letter: char| claims().any(|c| c.verdict.letter() == letter);
+    assert!("ABCD".chars().all(has));
+    let quoted = find("paper4-frame-rates").unwrap();
+    assert_eq!(quoted.measure(&mut lab()).unwrap(), None);
+}
+
+#[test]
+fn arithmetic_holds_at_any_size() {
+    for id in [
+        "paper3-texture-size",
+        "paper4-table-memory",
+        "paper1-one-division",
+    ] {
+        let found = find(id).unwrap().measure(&mut lab()).unwrap().unwrap();
+        assert_eq!(
+            found.judgement(),
+            Judgement::Holds,
+            "{id}: {:?}",
+            found.measures
+        );
+    }
+}
+
+/// 128 overlaps fit, not 256: shown as what it is.
+#[test]
+fn a_wrong_claim_does_not_hold() {
+    let found = find("paper2-overlaps")
+        .unwrap()
+        .measure(&mut lab())
+        .unwrap()
+        .unwrap();
+    let judged: Vec<Judgement> = found.measures.iter().map(Measure::judgement).collect();
+    assert_eq!(judged, [Judgement::DoesNotHold, Judgement::Holds]);
+    assert!(found.reason_if_needed().unwrap().contains("128"));
+}
+
+/// Every claim can be measured, gives finite figures, and says what it counted.
+#[test]
+fn every_claim_is_measured_at_a_small_size() {
+    let mut lab = lab();
+    let cheap = |c: &&Claim| {
+        !["thesis", "paper4-splits", "paper3-bandwidth"]
+            .iter()
+            .any(|p| c.id.starts_with(p))
+    };
+    for claim in claims().filter(cheap) {
+        let Some(found) = claim.measure(&mut lab).unwrap() else {
+            continue;
+        };
+        assert!(
+            !found.measures.is_empty() && !found.counted.is_empty(),
+            "{}",
+            claim.id
+        );
+        assert!(
+            !found.reason.is_empty() && !found.scene.is_empty(),
+            "{}",
+            claim.id
+        );
+        for m in &found.measures {
+            assert!(m.ours.is_finite(), "{}: {m:?}", claim.id);
+        }
+        let points = found
+            .charts
+            .iter()
+            .flat_map(|c| &c.series)
+            .flat_map(|s| &s.points);
+        assert!(points.flatten().all(|v| v.is_finite()), "{}", claim.id);
+    }
+}

@@ -3,6 +3,7 @@
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`penumbra`]: penumbra wedges of papers I and II
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
@@ -13,6 +14,7 @@
 
 pub mod coverage;
 pub mod coverage_table;
+pub mod light_view;
 pub mod penumbra;
 pub mod soft_volumes;
 pub mod split_volumes;
@@ -48,3 +50,4 @@ stages!(FragmentStage:
     penumbra::crossing::WedgeCrossing, penumbra::inside::WedgeInside,
     penumbra::buffers::TileDepths, penumbra::buffers::Boundary,
     penumbra::buffers::StencilCounts);
+stages!(FragmentStage: light_view::PlanarDepth);

@@ -2,6 +2,8 @@
 
 mod casters;
 mod given_visibility;
+#[allow(dead_code, unused_imports, reason = "techniques follow")]
+mod light_view;
 mod near_pyramid;
 mod passes;
 mod penumbra;

@@ -15,6 +15,7 @@ use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, Lanes, Mask};
 
 use crate::surface::PixelRays;
+use crate::vector::each2;
 
 /// Cosine between ray and facet, below which depth is interpolated.
 const EDGE_ON: f32 = 1e-3;
@@ -151,15 +152,12 @@ impl LightMapping {
             ViewRegion::Face => in_front & x.abs().le(z) & y.abs().le(z),
         };
         let place = [x, y];
-        let [u, v, _] = each3(
+        let uv = each2(
             #[inline(always)]
-            |k| {
-                let k = k % 2;
-                place[k] / z * self.scale + self.offset[k]
-            },
+            |k| place[k] / z * self.scale + self.offset[k],
         );
         InLightView {
-            uv: [u, v],
+            uv,
             distance: z,
             belongs,
         }

@@ -5,7 +5,7 @@
 
 use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps, Shadow, ShadowTo};
 
-use super::mapped::{self, Mapped, Sources};
+use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::scene::Scene;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
@@ -44,6 +44,7 @@ impl Technique for Pcf {
             TAPS,
             mapped::MAP_SIZE,
             mapped::BIAS,
+            mapped::SLOPE_BIAS,
             mapped::NEAR,
             mapped::VIEW,
             mapped::FIT,
@@ -66,13 +67,17 @@ impl Technique for Pcf {
         let taps = taps(self.name(), params)?;
         let cubic = params.get(KERNEL.name) == "bicubic";
         let width = if cubic { 4 } else { taps };
+        // As far as the farthest tap.
+        let margin = Margin {
+            bias: 0.5,
+            slope: f64::from(width) / 2.0,
+        };
         let mapped = Mapped {
             name: self.name(),
             scene,
             size,
             params,
-            // The farthest tap, and one texel for surfaces steeper than 45 degrees.
-            bias_texels: f64::from(width) / 2.0 + 1.0,
+            margin,
         };
         mapped.frame(
             textures,

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use gnomon_shaders::shadow_maps::{SampledKernel, Shadow, ShadowTo, WholeKernel};
 
-use super::mapped::{self, Mapped, Sources};
+use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::light_samples::Pattern;
 use crate::scene::Scene;
@@ -64,8 +64,11 @@ const SEED: ParamInfo = ParamInfo {
 
 const MOST: u32 = 1024;
 
-/// Points are those of whole kernels: a wide margin against self-shadowing.
-const BIAS_TEXELS: f64 = 3.0;
+/// Kernels are wider than any slope bias could make up for: a compromise.
+const MARGIN: Margin = Margin {
+    bias: 0.5,
+    slope: 1.0,
+};
 
 impl Technique for Pcss {
     fn name(&self) -> &'static str {
@@ -85,6 +88,7 @@ impl Technique for Pcss {
             SEED,
             mapped::MAP_SIZE,
             mapped::BIAS,
+            mapped::SLOPE_BIAS,
             mapped::NEAR,
             mapped::VIEW,
             mapped::FIT,
@@ -112,7 +116,7 @@ impl Technique for Pcss {
             scene,
             size,
             params,
-            bias_texels: BIAS_TEXELS,
+            margin: MARGIN,
         };
         mapped.frame(
             textures,

@@ -5,17 +5,13 @@ use gnomon_raster::state::ColorTargetState;
 use gnomon_shaders::shadow_maps::{BoxTaps, Shadow, ShadowTo};
 
 use super::light_view::ViewedLight;
-use super::mapped::{self, Mapped, Sources};
+use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::scene::Scene;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
 
 /// The registry's entry.
 pub(crate) struct ShadowMap;
-
-/// A surface at 45 degrees, from anywhere in a texel to its centre, and one more
-/// texel for steeper ones.
-const BIAS_TEXELS: f64 = 1.5;
 
 impl Technique for ShadowMap {
     fn name(&self) -> &'static str {
@@ -30,6 +26,7 @@ impl Technique for ShadowMap {
         const PARAMS: &[ParamInfo] = &[
             mapped::MAP_SIZE,
             mapped::BIAS,
+            mapped::SLOPE_BIAS,
             mapped::NEAR,
             mapped::VIEW,
             mapped::FIT,
@@ -54,7 +51,7 @@ impl Technique for ShadowMap {
             scene,
             size,
             params,
-            bias_texels: BIAS_TEXELS,
+            margin: Margin::ONE_TEXEL,
         };
         mapped.frame(
             textures,

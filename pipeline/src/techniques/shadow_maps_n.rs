@@ -10,7 +10,7 @@ use gnomon_raster::state::ColorTargetState;
 use gnomon_shaders::shadow_maps::{BoxTaps, Shadow, ShadowTo};
 
 use super::light_view::{LightExtent, ViewedLight};
-use super::mapped::{self, Mapped, Sources};
+use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::light::HardLight;
 use crate::light_samples::{Pattern, light_points};
@@ -43,9 +43,6 @@ const SEED: ParamInfo = ParamInfo {
 
 const MOST: u32 = 1024;
 
-/// As for one shadow map.
-const BIAS_TEXELS: f64 = 1.5;
-
 impl Technique for ShadowMapsN {
     fn name(&self) -> &'static str {
         "shadow-maps-n"
@@ -62,6 +59,7 @@ impl Technique for ShadowMapsN {
             SEED,
             mapped::MAP_SIZE,
             mapped::BIAS,
+            mapped::SLOPE_BIAS,
             mapped::NEAR,
             mapped::VIEW,
             mapped::FIT,
@@ -87,7 +85,7 @@ impl Technique for ShadowMapsN {
             scene,
             size,
             params,
-            bias_texels: BIAS_TEXELS,
+            margin: Margin::ONE_TEXEL,
         };
         mapped.frame(
             textures,

@@ -138,10 +138,10 @@ fn plates(d: f64) -> (Scene, ParallelPlates) {
     // Only the floor is of interest.
     objects[1].receives = false;
     let light = Light::horizontal_square(DVec3::Y * d, 2.0 * plates.light_half);
-    let width = plates.penumbra_half() + 0.2;
-    let mut camera = Camera::look_at([0.02, -1.0, 0.01], [0.0, 0.0, 0.0]);
+    // From below, as far away as 45 degrees need to see all of the penumbra.
+    let away = (plates.penumbra_half() + 0.2) / 0.414_213_562;
+    let mut camera = Camera::look_at([0.02, -away, 0.01], [0.0, 0.0, 0.0]);
     camera.up = DVec3::Z;
-    camera.fov_y_degrees = 2.0 * width.atan().to_degrees();
     (Scene::new(camera, vec![light], objects), plates)
 }
 

@@ -1,47 +1,17 @@
-//! Shadow maps, PCF, PCSS and N shadow maps against rays, closed forms and the
-//! exact oracle; and what they read, counted (IMPLEMENTING §1.11).
+//! Shadow maps and what is looked up in them: against rays, counted, and with odd
+//! scenes and parameters (IMPLEMENTING §1.11).
 
-use gnomon_pipeline::light::{HardLight, Light, LightShape};
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::metrics::visibility::{ErrorSummary, VisibilityError};
-use gnomon_pipeline::oracle::area::{LightRegion, VisibilityImage};
-use gnomon_pipeline::oracle::hard::HardOracle;
-use gnomon_pipeline::oracle::plates::ParallelPlates;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Camera, Material, Object, Scene, builtin};
-use gnomon_pipeline::shape;
-use gnomon_pipeline::technique::{Params, find};
+mod map_support;
 
 use glam::DVec3;
-
-const SIZE: [u32; 2] = [120, 80];
-
-fn scene(name: &str) -> Scene {
-    builtin::build(name).unwrap()
-}
-
-fn sized(name: &str, scene: &Scene, set: &[&str], size: [u32; 2]) -> Result<Rendered, String> {
-    let technique = find(name).unwrap();
-    let params = Params::parse(technique, set).map_err(|e| e.to_string())?;
-    let settings = RenderSettings {
-        size,
-        ..RenderSettings::default()
-    };
-    render(scene, technique, &params, &settings).map_err(|e| e.to_string())
-}
-
-fn by(name: &str, scene: &Scene, set: &[&str]) -> Rendered {
-    sized(name, scene, set, SIZE).unwrap()
-}
-
-fn truth(scene: &Scene) -> VisibilityImage {
-    VisibilityImage::of_scene(scene, 0, SIZE, &|| ()).unwrap()
-}
-
-fn figure(picture: &Rendered, name: &str) -> f64 {
-    let found = picture.figures.iter().find(|f| f.name == name);
-    found.unwrap_or_else(|| panic!("no figure {name}")).value
-}
+use gnomon_pipeline::light::{HardLight, LightShape};
+use gnomon_pipeline::mesh::Shading;
+use gnomon_pipeline::metrics::visibility::VisibilityError;
+use gnomon_pipeline::oracle::hard::HardOracle;
+use gnomon_pipeline::render::Rendered;
+use gnomon_pipeline::scene::{Material, Object, builtin};
+use gnomon_pipeline::shape;
+use map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
 
 /// Whether a shadow map that is right in every texel says so for `point`: whether
 /// something is nearer to the light than the point by more than the bias, for each
@@ -59,12 +29,10 @@ fn mapped(oracle: &HardOracle, light: DVec3, point: DVec3, bias: f64, texel: f64
     alike.then_some(centre)
 }
 
-/// A light below which all of a scene is: a horizontal square's centre.
-fn centre_of(scene: &Scene) -> DVec3 {
-    let HardLight::Point(centre) = scene.lights[0].hard() else {
-        panic!("a point");
-    };
-    centre
+fn look_up(picture: &Rendered) -> gnomon_raster::Counters {
+    let passes = &picture.report.passes;
+    let pass = passes.iter().find(|p| p.label == "look-up").unwrap();
+    pass.totals()
 }
 
 /// T: one map from the light's centre is the hard shadow, away from edges.
@@ -115,174 +83,6 @@ fn one_map_is_the_hard_shadow_away_from_edges() {
         // What the bias alone changes: contacts, and the unlit side of casters.
         assert!(as_in_truth * 1000 >= judged * 995, "{name}");
     }
-}
-
-/// Plate and floor under a square light, as IMPLEMENTING §5 has them, the floor at
-/// distance `d` from the light.
-fn plates(d: f64) -> (Scene, ParallelPlates) {
-    let plates = ParallelPlates {
-        light_half: 0.5,
-        plate_half: 0.3,
-        plate_distance: 2.0,
-        floor_distance: d,
-    };
-    let matt = Material::matt([0.8; 3]);
-    let solid = |name: &str, shape: shape::Shape| {
-        Object::new(name, shape.into_mesh(Shading::Flat).unwrap(), matt)
-    };
-    let plate = shape::bevelled_plate(plates.plate_half, d - plates.plate_distance, 0.01, 1.6);
-    let mut objects = vec![
-        solid("floor", shape::plane(8.0, 0.0)).receiver_only(),
-        solid("plate", plate),
-    ];
-    // Only the floor is of interest.
-    objects[1].receives = false;
-    let light = Light::horizontal_square(DVec3::Y * d, 2.0 * plates.light_half);
-    // From below, as far away as 45 degrees need to see all of the penumbra.
-    let away = (plates.penumbra_half() + 0.2) / 0.414_213_562;
-    let mut camera = Camera::look_at([0.02, -away, 0.01], [0.0, 0.0, 0.0]);
-    camera.up = DVec3::Z;
-    (Scene::new(camera, vec![light], objects), plates)
-}
-
-/// Errors on the floor against the closed form, and half the width of the kernel
-/// that it asks for, in texels.
-fn plate_error(name: &str, d: f64, set: &[&str]) -> (ErrorSummary, f64) {
-    let (scene, plates) = plates(d);
-    let picture = by(name, &scene, set);
-    let rays = scene.camera.eye_rays(SIZE[0], SIZE[1]);
-    let mut errors = Vec::new();
-    for (k, seen) in picture.visibility.iter().enumerate() {
-        let place = [k as u32 % SIZE[0], k as u32 / SIZE[0]].map(|c| f64::from(c) + 0.5);
-        let ray = rays.direction(place[0], place[1]);
-        let at = rays.origin - ray * (rays.origin.y / ray.y);
-        errors.push(f64::from(*seen) - plates.visibility(at.x, at.z));
-    }
-    let texel = figure(&picture, "texel") / figure(&picture, "far");
-    let kernel = plates.light_half * (1.0 / plates.plate_distance - 1.0 / d) / texel;
-    let summary = ErrorSummary::of(&errors).unwrap();
-    println!("{name} {set:?} d={d}: {summary:?}, kernel {kernel:.1} texels");
-    (summary, kernel)
-}
-
-const DISTANCES: [f64; 4] = [3.0, 4.9, 5.1, 8.0];
-
-/// T: the closed form within the map's resolution. Each edge of the plate is half
-/// a texel off at most, which of a kernel 2w wide hides 1/4w too much along one
-/// axis; so two edges, or corners, are off by 1/2w.
-#[test]
-fn whole_kernels_are_the_closed_form_within_texels() {
-    let mut all = [0.0, 0.0];
-    for d in DISTANCES {
-        for (k, size) in ["map-size=128", "map-size=256"].into_iter().enumerate() {
-            let set = ["sampling=all", "fit=receivers", size];
-            let (error, kernel) = plate_error("pcss", d, &set);
-            assert!(error.max <= 0.5 / kernel + 1e-3, "{d} {size}: {error:?}");
-            all[k] += error.rmse;
-        }
-        // A picture that is fitted to the plate has its edges between texels: no
-        // error is left but f32's.
-        let (error, _) = plate_error("pcss", d, &["sampling=all", "map-size=64"]);
-        assert!(error.max < 3e-5, "{d}: {error:?}");
-    }
-    // Halved texels halve the error; and texels are not exact.
-    assert!(all[1] < 0.7 * all[0] && all[1] > 1e-4, "{all:?}");
-}
-
-/// T: N maps are the closed form within the steps of N points and the texels.
-#[test]
-fn many_maps_are_the_closed_form_within_their_steps() {
-    for d in [3.0, 8.0] {
-        let mut before = f64::INFINITY;
-        for (maps, side) in [("maps=4", 2.0), ("maps=16", 4.0), ("maps=64", 8.0)] {
-            let set = ["pattern=grid", "map-size=256", maps];
-            let (error, kernel) = plate_error("shadow-maps-n", d, &set);
-            // Along each axis two edges, half a step each, and what texels add.
-            let bound = 2.0 / side + 0.5 / kernel;
-            assert!(error.max <= bound + 1e-3, "{d} {maps}: {error:?}");
-            assert!(error.rmse < 0.7 * before, "{d} {maps}: {error:?}");
-            before = error.rmse;
-        }
-        assert!(before < 0.03, "{d}: {before}");
-    }
-}
-
-/// Sampled kernels have the steps of their points: worse than all texels, and
-/// better with more points.
-#[test]
-fn sampled_kernels_approach_the_whole_ones() {
-    let of = |set: &[&str]| {
-        let set = [set, &["map-size=128"]].concat();
-        plate_error("pcss", 4.9, &set).0.rmse
-    };
-    let whole = of(&["sampling=all"]);
-    let few = of(&["samples=16", "search-samples=64"]);
-    let many = of(&["samples=256", "search-samples=64"]);
-    assert!(
-        whole < 0.5 * many && many < 0.5 * few,
-        "{whole} {many} {few}"
-    );
-}
-
-/// T, negative control: a kernel of fixed width that is right for one floor fails
-/// at the others, by far more than the resolution that PCSS is held to.
-#[test]
-fn one_fixed_kernel_fails_where_another_width_is_needed() {
-    let kernel = plate_error("pcf", 3.0, &["map-size=64"]).1;
-    let taps = format!("taps={}", (2.0 * kernel).round());
-    let tuned = |d| plate_error("pcf", d, &["map-size=64", &taps]);
-    let (fitting, width) = tuned(3.0);
-    assert!(fitting.max <= 1.0 / width + 1e-3, "right here: {fitting:?}");
-    for d in [4.9, 5.1, 8.0] {
-        let (error, width) = tuned(d);
-        assert!(error.max > 5.0 * (0.5 / width + 1e-3), "{d}: {error:?}");
-    }
-}
-
-/// T: variance. One random point sees the light or not: variance V(1 - V). N
-/// jittered ones, each in its cell, have less, and it falls as N^-3/2, for only
-/// the cells that an edge crosses vary: √N of N.
-#[test]
-fn variance_falls_as_predicted() {
-    const SEEDS: u32 = 24;
-    let size = [40, 28];
-    let scene = scene("parallel-plates");
-    let truth = VisibilityImage::of_scene(&scene, 0, size, &|| ()).unwrap();
-    let variance = |maps: u32| {
-        let picture = |seed: u32| {
-            let set = ["pattern=stratified", "map-size=128"].map(str::to_owned);
-            let more = [format!("maps={maps}"), format!("seed={seed}")];
-            let all: Vec<&str> = set.iter().chain(&more).map(String::as_str).collect();
-            sized("shadow-maps-n", &scene, &all, size)
-                .unwrap()
-                .visibility
-        };
-        let pictures: Vec<Vec<f32>> = (0..SEEDS).map(picture).collect();
-        let (mut found, mut binomial) = (0.0, 0.0);
-        for (k, v) in truth.values.iter().enumerate() {
-            if LightRegion::of(*v) != Some(LightRegion::Penumbra) {
-                continue;
-            }
-            let values = pictures.iter().map(|p| f64::from(p[k]));
-            let mean = values.clone().sum::<f64>() / f64::from(SEEDS);
-            let squares = values.map(|x| (x - mean) * (x - mean)).sum::<f64>();
-            found += squares / f64::from(SEEDS - 1);
-            binomial += v * (1.0 - v);
-        }
-        println!("{maps} maps: variance {:.4} of V(1-V)", found / binomial);
-        found / binomial
-    };
-    let [one, four, sixteen] = [1, 4, 16].map(variance);
-    assert!((one - 1.0).abs() < 0.15, "{one}");
-    assert!(four < 0.3 && sixteen < 0.08, "{four} {sixteen}");
-    let fall = four / sixteen;
-    assert!((5.5..11.5).contains(&fall), "8 is predicted: {fall}");
-}
-
-fn look_up(picture: &Rendered) -> gnomon_raster::Counters {
-    let passes = &picture.report.passes;
-    let pass = passes.iter().find(|p| p.label == "look-up").unwrap();
-    pass.totals()
 }
 
 /// T: what is fetched, exactly.
@@ -347,42 +147,6 @@ fn one_tap_is_the_shadow_map_to_the_bit() {
         assert_eq!(hard.visibility_hash(), one.visibility_hash(), "{name}");
         let soft = by("pcf", &scene, &["kernel=bicubic", "bias=0.01"]);
         assert_ne!(hard.visibility_hash(), soft.visibility_hash(), "{name}");
-    }
-}
-
-/// Errors on scenes with everything in them, for whoever reads the output; bounds
-/// hold what was measured with some room.
-#[test]
-fn built_in_scenes_against_the_truth() {
-    for (name, bounds) in [
-        ("parallel-plates", [1e-5, 0.02, 0.01]),
-        ("cylinder", [0.09, 0.10, 0.02]),
-        ("creature", [0.065, 0.08, 0.03]),
-        ("spheres", [0.095, 0.09, 0.055]),
-    ] {
-        let scene = scene(name);
-        let truth = truth(&scene);
-        let error = |technique: &str, set: &[&str]| {
-            let picture = by(technique, &scene, set);
-            let error = VisibilityError::measure(&truth, SIZE, &picture.visibility).unwrap();
-            assert_eq!(error.mask.out_of_range, 0);
-            let all = error.all.unwrap();
-            let bias = figure(&picture, "bias");
-            println!("{name} {technique} {set:?} bias {bias:.4}: {all:?}");
-            all.rmse
-        };
-        let hard = error("shadow-map", &[]);
-        let whole = error("pcss", &["sampling=all", "map-size=256"]);
-        let sampled = error("pcss", &[]);
-        let many = error("shadow-maps-n", &["maps=64"]);
-        assert!(
-            whole < bounds[0] && sampled < bounds[1] && many < bounds[2],
-            "{name}"
-        );
-        assert!(many < 0.4 * hard, "{name}");
-        let few = error("shadow-maps-n", &["maps=4"]);
-        let coarse = error("shadow-maps-n", &["map-size=64"]);
-        assert!(many < few && many < coarse, "{name}");
     }
 }
 
@@ -476,4 +240,16 @@ fn the_bias_is_in_world_units() {
     assert_eq!(dark("bias=0.99"), dark("bias=0"));
     assert!(dark("bias=0") > 100);
     assert_eq!(dark("bias=1.02"), 0);
+}
+
+/// Casters nearer than `near` are not looked at.
+#[test]
+fn casters_nearer_than_near_cast_nothing() {
+    let (scene, _) = plates(3.0);
+    let dark = |near: &str| {
+        let picture = by("shadow-map", &scene, &[near]);
+        picture.visibility.iter().filter(|v| **v == 0.0).count()
+    };
+    assert!(dark("near=1.9") == dark("near=auto") && dark("near=0.5") > 100);
+    assert_eq!(dark("near=2.1"), 0);
 }

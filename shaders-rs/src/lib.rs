@@ -3,7 +3,9 @@
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`penumbra`]: penumbra wedges of papers I and II
+//! * [`shadow_maps`]: shadows looked up in light views
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
@@ -13,7 +15,9 @@
 
 pub mod coverage;
 pub mod coverage_table;
+pub mod light_view;
 pub mod penumbra;
+pub mod shadow_maps;
 pub mod soft_volumes;
 pub mod split_volumes;
 pub mod surface;
@@ -49,3 +53,8 @@ stages!(FragmentStage:
     penumbra::crossing::WedgeCrossing, penumbra::inside::WedgeInside,
     penumbra::buffers::TileDepths, penumbra::buffers::Boundary,
     penumbra::buffers::StencilCounts);
+stages!(FragmentStage:
+    light_view::PlanarDepth,
+    shadow_maps::Shadow<shadow_maps::BoxTaps>, shadow_maps::Shadow<shadow_maps::CubicTaps>,
+    shadow_maps::Shadow<shadow_maps::SampledKernel>,
+    shadow_maps::Shadow<shadow_maps::WholeKernel>);

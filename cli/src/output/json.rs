@@ -45,6 +45,8 @@ pub(crate) struct RenderDocument {
     /// `null` for techniques that add no coverage of wedges.
     wedge_work: Option<WedgeWorkDocument>,
     casters: Vec<CasterDocument>,
+    /// Numbers that the technique chose, by name.
+    figures: Object<f64>,
     warnings: Vec<WarningDocument>,
     files: Vec<FileDocument>,
 }
@@ -213,10 +215,16 @@ impl RenderDocument {
             totals: WorkDocument::total(&done.report),
             wedge_work: WedgeWorkDocument::of(&done.report),
             casters: casters(job.scene, done),
+            figures: figures(done),
             warnings: done.warnings.iter().map(WarningDocument::new).collect(),
             files,
         }
     }
+}
+
+fn figures(done: &Rendered) -> Object<f64> {
+    let figures = done.figures.iter();
+    Object(figures.map(|f| (f.name.clone(), f.value)).collect())
 }
 
 /// How many threads `--threads N` stands for.

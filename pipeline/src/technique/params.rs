@@ -9,7 +9,8 @@ pub struct ParamInfo {
     pub name: &'static str,
     /// Value where none is given.
     pub default: &'static str,
-    /// Values it takes, separated by `|`; `N` stands for any whole number from 0.
+    /// Values it takes, separated by `|`; `N` stands for any whole number from 0,
+    /// `X` for any decimal number from 0.
     pub valid: &'static str,
     /// One line for people.
     pub summary: &'static str,
@@ -18,9 +19,16 @@ pub struct ParamInfo {
 impl ParamInfo {
     fn takes(&self, value: &str) -> bool {
         let is_number = || !value.is_empty() && value.parse::<u32>().is_ok();
-        self.valid
-            .split('|')
-            .any(|v| if v == "N" { is_number() } else { v == value })
+        let is_decimal = || {
+            value
+                .parse::<f64>()
+                .is_ok_and(|x| x.is_finite() && x >= 0.0)
+        };
+        self.valid.split('|').any(|v| match v {
+            "N" => is_number(),
+            "X" => is_decimal(),
+            word => word == value,
+        })
     }
 }
 

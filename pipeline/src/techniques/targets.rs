@@ -112,6 +112,7 @@ impl Targets {
             },
             warnings: Vec::new(),
             casters: Vec::new(),
+            figures: Vec::new(),
         }
     }
 

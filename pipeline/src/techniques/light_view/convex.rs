@@ -1,0 +1,136 @@
+//! Convex polygons in space: clipping, and bounds of what a light sees of them.
+
+use glam::DVec3;
+
+/// Keeps of a convex polygon where `side` is not negative; `side` must be affine.
+/// `scratch` is overwritten.
+pub(super) fn clip(
+    polygon: &mut Vec<DVec3>,
+    scratch: &mut Vec<DVec3>,
+    side: impl Fn(DVec3) -> f64,
+) {
+    scratch.clear();
+    for (k, &b) in polygon.iter().enumerate() {
+        let a = polygon[(k + polygon.len() - 1) % polygon.len()];
+        let (from, to) = (side(a), side(b));
+        if (from < 0.0) != (to < 0.0) {
+            scratch.push(a + (b - a) * (from / (from - to)));
+        }
+        if to >= 0.0 {
+            scratch.push(b);
+        }
+    }
+    std::mem::swap(polygon, scratch);
+}
+
+/// A rectangle of tangents (x/z, y/z) and an interval of distances z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TangentBox {
+    pub(super) low: [f64; 2],
+    pub(super) high: [f64; 2],
+    pub(super) nearest: f64,
+    pub(super) farthest: f64,
+}
+
+impl TangentBox {
+    /// Holds nothing.
+    pub(super) const EMPTY: Self = Self {
+        low: [f64::INFINITY; 2],
+        high: [f64::NEG_INFINITY; 2],
+        nearest: f64::INFINITY,
+        farthest: f64::NEG_INFINITY,
+    };
+
+    /// Bounds of points with positive z.
+    pub(super) fn of(points: &[DVec3]) -> Self {
+        let mut bounds = Self::EMPTY;
+        for p in points {
+            let place = [p.x / p.z, p.y / p.z];
+            for (k, t) in place.into_iter().enumerate() {
+                bounds.low[k] = bounds.low[k].min(t);
+                bounds.high[k] = bounds.high[k].max(t);
+            }
+            bounds.nearest = bounds.nearest.min(p.z);
+            bounds.farthest = bounds.farthest.max(p.z);
+        }
+        bounds
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        !(self.low[0] <= self.high[0] && self.low[1] <= self.high[1])
+    }
+
+    pub(super) fn join(&mut self, other: &Self) {
+        for k in 0..2 {
+            self.low[k] = self.low[k].min(other.low[k]);
+            self.high[k] = self.high[k].max(other.high[k]);
+        }
+        self.nearest = self.nearest.min(other.nearest);
+        self.farthest = self.farthest.max(other.farthest);
+    }
+
+    /// The tangents that both have.
+    pub(super) fn meet(&self, other: &Self) -> Self {
+        let mut both = *self;
+        for k in 0..2 {
+            both.low[k] = both.low[k].max(other.low[k]);
+            both.high[k] = both.high[k].min(other.high[k]);
+        }
+        both
+    }
+
+    /// Wider by so much on each side.
+    pub(super) fn grown(&self, by: [f64; 2]) -> Self {
+        let mut grown = *self;
+        for (k, by) in by.into_iter().enumerate() {
+            grown.low[k] -= by;
+            grown.high[k] += by;
+        }
+        grown
+    }
+
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        !self.meet(other).is_empty()
+    }
+
+    /// Largest tangent, either sign.
+    pub(super) fn steepest(&self) -> f64 {
+        let all = self.low.into_iter().chain(self.high);
+        all.map(f64::abs).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clipping_keeps_what_is_on_the_side() {
+        let mut square = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        clip(&mut square, &mut Vec::new(), |p| p.x - 0.25);
+        let area = (1..square.len() - 1)
+            .map(|k| {
+                (square[k] - square[0])
+                    .cross(square[k + 1] - square[0])
+                    .length()
+                    / 2.0
+            })
+            .sum::<f64>();
+        assert!((area - 0.75).abs() < 1e-12);
+        clip(&mut square, &mut Vec::new(), |p| p.x - 2.0);
+        assert!(square.is_empty());
+    }
+
+    #[test]
+    fn boxes_join_meet_and_grow() {
+        let a = TangentBox::of(&[DVec3::new(2.0, 0.0, 2.0), DVec3::new(-1.0, 4.0, 4.0)]);
+        assert_eq!((a.low, a.high), ([-0.25, 0.0], [1.0, 1.0]));
+        assert_eq!((a.nearest, a.farthest), (2.0, 4.0));
+        let far = TangentBox::of(&[DVec3::new(30.0, 1.0, 10.0)]);
+        assert!(!a.overlaps(&far) && a.overlaps(&far.grown([2.0, 0.0])));
+        let mut both = a;
+        both.join(&far);
+        assert_eq!((both.high[0], both.farthest), (3.0, 10.0));
+        assert!(TangentBox::EMPTY.is_empty() && TangentBox::of(&[]).is_empty());
+    }
+}

@@ -1,0 +1,82 @@
+//! What the tests of techniques on light views share.
+#![allow(dead_code, reason = "each test file uses a part")]
+
+use glam::DVec3;
+use gnomon_pipeline::light::{HardLight, Light};
+use gnomon_pipeline::mesh::Shading;
+use gnomon_pipeline::oracle::area::VisibilityImage;
+use gnomon_pipeline::oracle::plates::ParallelPlates;
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::{Camera, Material, Object, Scene, builtin};
+use gnomon_pipeline::shape;
+use gnomon_pipeline::technique::{Params, find};
+
+pub(crate) const SIZE: [u32; 2] = [120, 80];
+
+pub(crate) fn scene(name: &str) -> Scene {
+    builtin::build(name).unwrap()
+}
+
+pub(crate) fn sized(
+    name: &str,
+    scene: &Scene,
+    set: &[&str],
+    size: [u32; 2],
+) -> Result<Rendered, String> {
+    let technique = find(name).unwrap();
+    let params = Params::parse(technique, set).map_err(|e| e.to_string())?;
+    let settings = RenderSettings {
+        size,
+        ..RenderSettings::default()
+    };
+    render(scene, technique, &params, &settings).map_err(|e| e.to_string())
+}
+
+pub(crate) fn by(name: &str, scene: &Scene, set: &[&str]) -> Rendered {
+    sized(name, scene, set, SIZE).unwrap()
+}
+
+pub(crate) fn truth(scene: &Scene) -> VisibilityImage {
+    VisibilityImage::of_scene(scene, 0, SIZE, &|| ()).unwrap()
+}
+
+pub(crate) fn figure(picture: &Rendered, name: &str) -> f64 {
+    let found = picture.figures.iter().find(|f| f.name == name);
+    found.unwrap_or_else(|| panic!("no figure {name}")).value
+}
+
+/// A light below which all of a scene is: a horizontal square's centre.
+pub(crate) fn centre_of(scene: &Scene) -> DVec3 {
+    let HardLight::Point(centre) = scene.lights[0].hard() else {
+        panic!("a point");
+    };
+    centre
+}
+
+/// Plate and floor under a square light, as IMPLEMENTING §5 has them, the floor at
+/// distance `d` from the light.
+pub(crate) fn plates(d: f64) -> (Scene, ParallelPlates) {
+    let plates = ParallelPlates {
+        light_half: 0.5,
+        plate_half: 0.3,
+        plate_distance: 2.0,
+        floor_distance: d,
+    };
+    let matt = Material::matt([0.8; 3]);
+    let solid = |name: &str, shape: shape::Shape| {
+        Object::new(name, shape.into_mesh(Shading::Flat).unwrap(), matt)
+    };
+    let plate = shape::bevelled_plate(plates.plate_half, d - plates.plate_distance, 0.01, 1.6);
+    let mut objects = vec![
+        solid("floor", shape::plane(8.0, 0.0)).receiver_only(),
+        solid("plate", plate),
+    ];
+    // Only the floor is of interest.
+    objects[1].receives = false;
+    let light = Light::horizontal_square(DVec3::Y * d, 2.0 * plates.light_half);
+    // From below, as far away as 45 degrees need to see all of the penumbra.
+    let away = (plates.penumbra_half() + 0.2) / 0.414_213_562;
+    let mut camera = Camera::look_at([0.02, -away, 0.01], [0.0, 0.0, 0.0]);
+    camera.up = DVec3::Z;
+    (Scene::new(camera, vec![light], objects), plates)
+}

@@ -1,0 +1,208 @@
+//! Light views: planar pictures of the casters from a point of a light, and where
+//! in such a picture a world-space position lies (IMPLEMENTING §1.7, §1.11).
+//!
+//! Depth is *linear* and *planar*: the distance from the light's centre along the
+//! view's axis, not along the ray, scaled to 0..1 between two distances. Similar
+//! triangles between light, blocker and receiver are exact in it where light and
+//! receiver are parallel to the picture.
+//!
+//! Image coordinates are (u, v), 0..1 over the picture, v downwards: texel (i, j)
+//! of n x n covers (i..i+1, j..j+1)/n.
+
+use gnomon_raster::math::{dot3, length};
+use gnomon_raster::shader::{Fragment, FragmentShader};
+use gnomon_raster::simd::each3;
+use gnomon_raster::{F32, Lanes, Mask};
+
+use crate::surface::PixelRays;
+use crate::vector::each2;
+
+/// Cosine between ray and facet, below which depth is interpolated.
+const EDGE_ON: f32 = 1e-3;
+
+/// Distances along the view's axis that are stored as 0 and 1, world units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthRange {
+    /// Stored as 0.
+    pub near: f32,
+    /// Stored as 1, and what is cleared to: nothing in the way.
+    pub far: f32,
+}
+
+impl DepthRange {
+    /// The stored value of a distance; not limited.
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled<L: Lanes>(&self, distance: F32<L>) -> F32<L> {
+        (distance - self.near) * (1.0 / (self.far - self.near))
+    }
+
+    /// The distance that is stored as `scaled`, world units.
+    #[inline(always)]
+    #[must_use]
+    pub fn distance<L: Lanes>(&self, scaled: F32<L>) -> F32<L> {
+        scaled * (self.far - self.near) + self.near
+    }
+}
+
+/// Scaled depth in red of attachment 0, limited to 0..=1. Varyings are those of
+/// [`crate::transform::Facets`], distances from the plane being those of a
+/// reference point.
+///
+/// Vertices are snapped to 1/256 texel, and interpolated depth with them, which on
+/// steep facets is many times the depth's precision. So depth is where the texel's
+/// ray meets the facet's plane, and the interpolated one only where the facet is
+/// seen edge on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanarDepth {
+    /// Rays through texels, each one long along the view's axis. They start at
+    /// `eye`, the light's centre relative to the reference point.
+    pub rays: PixelRays,
+    /// How depth is stored.
+    pub range: DepthRange,
+    /// Texels by which a facet's slope pushes it away from the light; 0: not at all.
+    pub slope: f32,
+    /// The most that it does, world units.
+    pub slope_limit: f32,
+}
+
+impl FragmentShader for PlanarDepth {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let (x, y) = (f.x(), f.y());
+        let rays = &self.rays;
+        let direction = each3(
+            #[inline(always)]
+            |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
+        );
+        let normal = each3(
+            #[inline(always)]
+            |i| f.varying(3 + i),
+        );
+        let moved = dot3(
+            normal,
+            each3(
+                #[inline(always)]
+                |i| F32::splat(l, rays.eye[i]),
+            ),
+        );
+        let slope = dot3(normal, direction);
+        let steep = slope.abs().gt(length(direction) * EDGE_ON);
+        let distance = steep.select_f32((f.varying(6) - moved) / slope, f.w());
+        let distance = match self.slope > 0.0 {
+            true => distance + self.pushed(l, normal, distance / slope.abs()),
+            false => distance,
+        };
+        let depth = self.range.scaled(distance).clamp(0.0, 1.0);
+        let zero = F32::splat(l, 0.0);
+        f.set_color(0, [depth, zero, zero, F32::splat(l, 1.0)]);
+    }
+}
+
+impl PlanarDepth {
+    /// What depth changes over `slope` texels along each axis. Where the facet is
+    /// seen edge on it is the limit.
+    #[inline(always)]
+    fn pushed<L: Lanes>(&self, l: L, normal: [F32<L>; 3], per_step: F32<L>) -> F32<L> {
+        let steps = along(l, normal, self.rays.right) + along(l, normal, self.rays.down);
+        let limit = F32::splat(l, self.slope_limit);
+        (steps * per_step * self.slope).min(limit)
+    }
+}
+
+/// |normal · step|.
+#[inline(always)]
+fn along<L: Lanes>(l: L, normal: [F32<L>; 3], step: [f32; 3]) -> F32<L> {
+    let step = each3(
+        #[inline(always)]
+        |i| F32::splat(l, step[i]),
+    );
+    dot3(normal, step).abs()
+}
+
+/// What of the world belongs to a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewRegion {
+    /// All that is in front of the light.
+    Front,
+    /// The pyramid of a cube's face: |x| and |y| at most z.
+    Face,
+}
+
+/// From world space to a light view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightMapping {
+    /// Where the picture is taken from, relative to the origin of positions.
+    pub centre: [f32; 3],
+    /// Unit vectors to the right, downwards and along the view's axis.
+    pub axes: [[f32; 3]; 3],
+    /// Factor from tangents (x/z, y/z) to (u, v).
+    pub scale: f32,
+    /// Added to the product.
+    pub offset: [f32; 2],
+    /// How depth is stored.
+    pub range: DepthRange,
+    /// Texels along a side.
+    pub size: u32,
+    /// Which positions belong to the view.
+    pub region: ViewRegion,
+}
+
+/// A position in a light view.
+#[derive(Clone, Copy)]
+pub struct InLightView<L: Lanes> {
+    /// Image coordinates (u, v); inside the picture in 0..1, and anything where
+    /// `belongs` is not set.
+    pub uv: [F32<L>; 2],
+    /// Distance along the view's axis, world units.
+    pub distance: F32<L>,
+    /// Whether the position is in the view's region.
+    pub belongs: Mask<L>,
+}
+
+impl LightMapping {
+    /// Where `position` is in the picture.
+    #[inline(always)]
+    pub fn locate<L: Lanes>(&self, l: L, position: [F32<L>; 3]) -> InLightView<L> {
+        let from = each3(
+            #[inline(always)]
+            |i| position[i] - self.centre[i],
+        );
+        let [x, y, z] = each3(
+            #[inline(always)]
+            |k| {
+                let axis = self.axes[k];
+                (from[0] * axis[0] + from[1] * axis[1]) + from[2] * axis[2]
+            },
+        );
+        let in_front = z.gt(F32::splat(l, 0.0));
+        let belongs = match self.region {
+            ViewRegion::Front => in_front,
+            ViewRegion::Face => in_front & x.abs().le(z) & y.abs().le(z),
+        };
+        let place = [x, y];
+        let uv = each2(
+            #[inline(always)]
+            |k| place[k] / z * self.scale + self.offset[k],
+        );
+        InLightView {
+            uv,
+            distance: z,
+            belongs,
+        }
+    }
+
+    /// Half the width in u (and in v) of what lies between a receiver at distance
+    /// `receiver` and a light of the given half width, at distance `blocker`
+    /// (world units): `W(z)/2` of IMPLEMENTING §1.7.
+    #[inline(always)]
+    #[must_use]
+    pub fn half_width<L: Lanes>(
+        &self,
+        light_half: f32,
+        blocker: F32<L>,
+        receiver: F32<L>,
+    ) -> F32<L> {
+        (receiver - blocker) * (light_half * self.scale) / (receiver * blocker)
+    }
+}

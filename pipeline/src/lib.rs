@@ -49,6 +49,7 @@ pub mod adjacency;
 pub mod area_light;
 pub mod caster;
 pub mod comparison;
+pub mod convolution;
 pub mod coverage;
 pub mod error;
 pub mod heat;

@@ -20,8 +20,8 @@ use crate::caster::RefusedCaster;
 use crate::error::LightError;
 use crate::scene::Scene;
 use crate::techniques::{
-    PenumbraWedges, PenumbraWedgesRestructured, SampledShadowVolumes, ShadowVolumes,
-    SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed,
+    ConvolutionSoftShadows, PenumbraWedges, PenumbraWedgesRestructured, SampledShadowVolumes,
+    ShadowVolumes, SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed,
 };
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
@@ -93,6 +93,7 @@ pub fn techniques() -> &'static [&'static dyn Technique] {
         &PenumbraWedgesRestructured,
         &SoftShadowVolumes,
         &SoftShadowVolumesOptimised,
+        &ConvolutionSoftShadows,
     ];
     LIST
 }

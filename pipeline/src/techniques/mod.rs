@@ -1,6 +1,7 @@
 //! The techniques, one file each; the list is [`crate::technique::techniques`].
 
 mod casters;
+mod convolution_soft_shadows;
 mod given_visibility;
 #[allow(dead_code, unused_imports, reason = "techniques follow")]
 mod light_view;
@@ -18,6 +19,7 @@ mod unshadowed;
 mod visibility;
 mod volume_draws;
 
+pub(crate) use convolution_soft_shadows::ConvolutionSoftShadows;
 pub(crate) use given_visibility::GivenVisibility;
 pub(crate) use penumbra_wedges::PenumbraWedges;
 pub(crate) use penumbra_wedges_restructured::PenumbraWedgesRestructured;

@@ -24,6 +24,8 @@ mod images;
 mod needed;
 mod prefilter;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{

@@ -80,8 +80,8 @@ impl Needed {
     fn of_mips(reads: &Reads, side: u32) -> Self {
         let widest = 2.0 * reads.half[0].max(reads.half[1]) * f64::from(side);
         let mut last = 0;
-        // One level more than the widest kernel's, between which it is filtered.
-        while last < side.ilog2() && (last == 0 || f64::from(1u32 << (last - 1)) < widest) {
+        // Kernels are filtered between the levels with finer and coarser texels.
+        while last < side.ilog2() && f64::from(1u32 << last) < widest {
             last += 1;
         }
         let mut levels: Vec<Texels> = (0..=last)
@@ -111,15 +111,15 @@ mod tests {
     const READS: Reads = Reads {
         low: [0.3, -0.5],
         high: [0.4, 0.1],
-        half: [0.01, 0.02],
+        half: [0.005, 0.01],
     };
 
     #[test]
     fn each_level_has_what_the_next_is_made_of() {
-        let needed = Needed::of(&READS, 256, Filter::Mip);
-        // 10.24 texels: between levels 3 and 4.
+        let needed = Needed::of(&READS, 1024, Filter::Mip);
+        // 20.5 texels: between levels 4 and 5.
         assert_eq!(needed.last_level(), 5);
-        assert_eq!(needed.level(0).side, 256);
+        assert_eq!(needed.level(0).side, 1024);
         for level in 1..=needed.last_level() {
             let (fine, coarse) = (needed.level(level - 1), needed.level(level));
             for k in 0..2 {
@@ -127,7 +127,9 @@ mod tests {
                 assert!(fine.end[k] >= 2 * coarse.end[k]);
             }
         }
-        assert!(needed.level(0).begin[0] > 0 && needed.level(0).end[0] < 256);
+        let (first, last) = (needed.level(0), needed.level(5));
+        assert!(first.begin[0] > 0 && first.end[1] < 1024, "{first:?}");
+        assert_eq!((last.begin, last.end), ([7, 0], [15, 6]));
     }
 
     #[test]

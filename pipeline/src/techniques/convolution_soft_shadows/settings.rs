@@ -61,7 +61,7 @@ pub(super) const STRENGTH: ParamInfo = ParamInfo {
 
 pub(super) const FALLOFF: ParamInfo = ParamInfo {
     name: "b",
-    default: "10",
+    default: "20",
     valid: "X",
     summary: "falloff B of the sharpening, depths being 0..1 over the light view",
 };
@@ -82,7 +82,7 @@ pub(super) const THRESHOLD: ParamInfo = ParamInfo {
 
 pub(super) const MIP_SHARPER: ParamInfo = ParamInfo {
     name: "mip-sharper",
-    default: "0",
+    default: "0.8",
     valid: "X",
     summary: "mip levels finer than the one whose texels are as wide as the kernel",
 };

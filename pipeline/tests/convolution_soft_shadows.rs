@@ -80,9 +80,9 @@ fn parallel_plates_are_nearly_the_closed_form() {
     for filter in ["mip", "sat", "sat-u32"] {
         let set = [&*format!("filter={filter}"), "a=0"];
         let [rms, largest] = floor_error(&plates(), &set);
-        assert!(rms < 0.003 && largest < 0.021, "{filter}");
+        assert!(rms < 0.004 && largest < 0.021, "{filter}");
     }
-    // A kernel at its first width, as a fixed one would be, is off by far more.
+    // One term that rings, of a coarse picture, is off by far more.
     let fixed = [
         &*"filter=sat",
         "a=0",
@@ -104,11 +104,11 @@ fn the_error_falls_with_the_order() {
     scene.objects.push(below.receiver_only());
     let error = |m: u32| {
         let order = format!("m={m}");
-        floor_error(&scene, &["filter=sat-u32", "a=0", &order])[0]
+        floor_error(&scene, &["filter=sat-u32", "a=0", "map-size=256", &order])[0]
     };
-    let errors = [1, 2, 4, 8, 16].map(error);
+    let errors = [1, 2, 4, 8].map(error);
     assert!(errors.windows(2).all(|w| w[1] < w[0]), "{errors:?}");
-    assert!(errors[4] < 0.1 * errors[0], "{errors:?}");
+    assert!(errors[3] < 0.05 * errors[0], "{errors:?}");
 }
 
 /// §4.1 and §6: at M = 4 two CSM-Z, one depth and twice two CSM look-ups a pixel, the
@@ -263,10 +263,16 @@ fn what_stands_for_other_lights_is_said() {
     assert!(picture.warnings.iter().any(|w| w.code == "light-as-square"));
     // A point is a light without width: at the finest level, nearly hard.
     scene.lights[0].shape = LightShape::Point { position: centre };
-    let picture = soft(&scene, &["map-size=256", "filter=sat"]);
-    sane(&picture, "point");
-    let between = |v: &&f32| **v > 0.1 && **v < 0.9;
-    assert!(picture.visibility.iter().filter(between).count() < 300);
+    for filter in ["filter=mip", "filter=sat"] {
+        let picture = soft(&scene, &["map-size=256", filter]);
+        sane(&picture, "point");
+        let count = |low: f32, high: f32| {
+            let within = |v: &&f32| **v > low && **v < high;
+            picture.visibility.iter().filter(within).count()
+        };
+        let (dark, between) = (count(-1.0, 0.1), count(0.1, 0.9));
+        assert!(dark > 200 && between < 150, "{filter}: {dark} {between}");
+    }
     scene.lights[0].shape = LightShape::Directional { towards: DVec3::Y };
     let technique = find("convolution-soft-shadows").unwrap();
     let settings = RenderSettings::default();

@@ -113,19 +113,25 @@ impl Prefiltered for Mipmaps {
     type Window<L: Lanes> = Squares<L>;
 
     #[inline(always)]
-    fn window<L: Lanes>(&self, _: L, r: &Rectangle<L>) -> Squares<L> {
+    fn window<L: Lanes>(&self, l: L, r: &Rectangle<L>) -> Squares<L> {
         let side = self.side as f32;
-        let area = (r.half[0] * (2.0 * side)) * (r.half[1] * (2.0 * side));
+        // No less than a texel, as lights without width have it.
+        let least = F32::splat(l, 0.5 / side);
+        let half = [r.half[0].max(least), r.half[1].max(least)];
+        let area = (half[0] * (2.0 * side)) * (half[1] * (2.0 * side));
         let width = (area * (1.0 / self.probes as f32)).sqrt();
         let levels = self.side.trailing_zeros() as f32;
         let lod = (log2(width.clamp(1.0, side)) + self.lod_bias).clamp(0.0, levels);
         let margin = exp2(lod.ceil()) * (0.5 / side);
-        let within = |k: usize| part(r.centre[k] - r.half[k], r.centre[k] + r.half[k], 1.0);
+        let centre = r.centre;
+        let [u, v] = [0, 1];
+        let share = part(centre[u] - half[u], centre[u] + half[u], 1.0)
+            * part(centre[v] - half[v], centre[v] + half[v], 1.0);
         Squares {
-            rectangle: *r,
+            rectangle: Rectangle { centre, half },
             lod,
             margin,
-            share: within(0) * within(1),
+            share,
         }
     }
 

@@ -24,8 +24,9 @@ impl Source {
     #[inline(always)]
     fn depth<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) -> (F32<L>, Mask<L>) {
         let first = if self.exclusive { 1 } else { 0 };
-        let [x, y] = self.origin.map(|o| I32::splat(l, o as i32 + first));
-        let (x, y) = (f.column() - x, f.row() - y);
+        let [x, y] = self.origin;
+        let x = f.column() - I32::splat(l, x as i32 + first);
+        let y = f.row() - I32::splat(l, y as i32 + first);
         let zero = I32::splat(l, 0);
         let [stored, ..] = texel_of(l, f, 0, [x, y, zero]);
         let one = F32::splat(l, 1.0);

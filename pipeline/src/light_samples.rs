@@ -48,7 +48,7 @@ impl Pattern {
     }
 
     /// Point in column `i`, row `j` of `side` by `side`, in 0..1.
-    fn place(self, [i, j]: [u32; 2], side: u32, seed: u64) -> [f64; 2] {
+    pub(crate) fn place(self, [i, j]: [u32; 2], side: u32, seed: u64) -> [f64; 2] {
         let n = f64::from(side);
         let centre = |cell: u32| (f64::from(cell) + 0.5) / n;
         let inside = match self {

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::scene::Scene;
 use crate::technique::{
-    CasterUse, Frame, Params, Technique, TechniqueError, VisibilityOutput, Warning,
+    CasterUse, Figure, Frame, Params, Technique, TechniqueError, VisibilityOutput, Warning,
 };
 
 /// How to render.
@@ -58,6 +58,8 @@ pub struct Rendered {
     pub warnings: Vec<Warning>,
     /// What became of each caster.
     pub casters: Vec<CasterUse>,
+    /// Numbers that the technique chose for the scene.
+    pub figures: Vec<Figure>,
 }
 
 impl Rendered {
@@ -176,6 +178,7 @@ fn read_back(
         report: times.report,
         warnings,
         casters: frame.casters,
+        figures: frame.figures,
     })
 }
 

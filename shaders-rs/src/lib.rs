@@ -6,6 +6,7 @@
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`convolution`]: shadow maps that are filtered before they are compared
 //! * [`penumbra`]: penumbra wedges of papers I and II
+//! * [`shadow_maps`]: shadows looked up in light views
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
@@ -18,6 +19,7 @@ pub mod coverage;
 pub mod coverage_table;
 pub mod light_view;
 pub mod penumbra;
+pub mod shadow_maps;
 pub mod soft_volumes;
 pub mod split_volumes;
 pub mod surface;
@@ -59,4 +61,8 @@ stages!(FragmentStage:
     convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>,
     convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>,
     convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>);
-stages!(FragmentStage: light_view::PlanarDepth);
+stages!(FragmentStage:
+    light_view::PlanarDepth,
+    shadow_maps::Shadow<shadow_maps::BoxTaps>, shadow_maps::Shadow<shadow_maps::CubicTaps>,
+    shadow_maps::Shadow<shadow_maps::SampledKernel>,
+    shadow_maps::Shadow<shadow_maps::WholeKernel>);

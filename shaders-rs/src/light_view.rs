@@ -15,6 +15,7 @@ use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, Lanes, Mask};
 
 use crate::surface::PixelRays;
+use crate::vector::each2;
 
 /// Cosine between ray and facet, below which depth is interpolated.
 const EDGE_ON: f32 = 1e-3;
@@ -59,6 +60,10 @@ pub struct PlanarDepth {
     pub rays: PixelRays,
     /// How depth is stored.
     pub range: DepthRange,
+    /// Texels by which a facet's slope pushes it away from the light; 0: not at all.
+    pub slope: f32,
+    /// The most that it does, world units.
+    pub slope_limit: f32,
 }
 
 impl FragmentShader for PlanarDepth {
@@ -84,10 +89,35 @@ impl FragmentShader for PlanarDepth {
         let slope = dot3(normal, direction);
         let steep = slope.abs().gt(length(direction) * EDGE_ON);
         let distance = steep.select_f32((f.varying(6) - moved) / slope, f.w());
+        let distance = match self.slope > 0.0 {
+            true => distance + self.pushed(l, normal, distance / slope.abs()),
+            false => distance,
+        };
         let depth = self.range.scaled(distance).clamp(0.0, 1.0);
         let zero = F32::splat(l, 0.0);
         f.set_color(0, [depth, zero, zero, F32::splat(l, 1.0)]);
     }
+}
+
+impl PlanarDepth {
+    /// What depth changes over `slope` texels along each axis. Where the facet is
+    /// seen edge on it is the limit.
+    #[inline(always)]
+    fn pushed<L: Lanes>(&self, l: L, normal: [F32<L>; 3], per_step: F32<L>) -> F32<L> {
+        let steps = along(l, normal, self.rays.right) + along(l, normal, self.rays.down);
+        let limit = F32::splat(l, self.slope_limit);
+        (steps * per_step * self.slope).min(limit)
+    }
+}
+
+/// |normal · step|.
+#[inline(always)]
+fn along<L: Lanes>(l: L, normal: [F32<L>; 3], step: [f32; 3]) -> F32<L> {
+    let step = each3(
+        #[inline(always)]
+        |i| F32::splat(l, step[i]),
+    );
+    dot3(normal, step).abs()
 }
 
 /// What of the world belongs to a view.
@@ -151,15 +181,12 @@ impl LightMapping {
             ViewRegion::Face => in_front & x.abs().le(z) & y.abs().le(z),
         };
         let place = [x, y];
-        let [u, v, _] = each3(
+        let uv = each2(
             #[inline(always)]
-            |k| {
-                let k = k % 2;
-                place[k] / z * self.scale + self.offset[k]
-            },
+            |k| place[k] / z * self.scale + self.offset[k],
         );
         InLightView {
-            uv: [u, v],
+            uv,
             distance: z,
             belongs,
         }

@@ -27,3 +27,9 @@ impl<L: Lanes> V3<L> {
         ])
     }
 }
+
+/// `[f(0), f(1)]`, for lane code.
+#[inline(always)]
+pub(crate) fn each2<T>(mut f: impl FnMut(usize) -> T) -> [T; 2] {
+    [f(0), f(1)]
+}

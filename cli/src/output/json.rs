@@ -42,6 +42,8 @@ pub(crate) struct RenderDocument {
     passes: Vec<PassDocument>,
     totals: WorkDocument,
     casters: Vec<CasterDocument>,
+    /// Numbers that the technique chose, by name.
+    figures: Object<f64>,
     warnings: Vec<WarningDocument>,
     files: Vec<FileDocument>,
 }
@@ -190,10 +192,16 @@ impl RenderDocument {
             passes: done.report.passes.iter().map(PassDocument::new).collect(),
             totals: WorkDocument::total(&done.report),
             casters: casters(job.scene, done),
+            figures: figures(done),
             warnings: done.warnings.iter().map(WarningDocument::new).collect(),
             files,
         }
     }
+}
+
+fn figures(done: &Rendered) -> Object<f64> {
+    let figures = done.figures.iter();
+    Object(figures.map(|f| (f.name.clone(), f.value)).collect())
 }
 
 /// How many threads `--threads N` stands for.

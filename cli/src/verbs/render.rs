@@ -190,6 +190,9 @@ fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
         done.color_hash(),
         done.visibility_hash()
     );
+    for figure in &done.figures {
+        text += &format!("{}: {:.6}\n", figure.name, figure.value);
+    }
     for warning in &done.warnings {
         text += &format!("warning: {}: {}\n", warning.code, warning.message);
     }

@@ -19,6 +19,17 @@ pub struct Frame {
     /// What became of each caster, light after light; empty for techniques
     /// without casters.
     pub casters: Vec<CasterUse>,
+    /// Numbers that the technique chose for this scene, such as a bias.
+    pub figures: Vec<Figure>,
+}
+
+/// A number that a technique chose, to be reported with its results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// What it is, with the light's number where there are several.
+    pub name: String,
+    /// World units where it is a length.
+    pub value: f64,
 }
 
 /// The textures that hold a frame's results, at mip 0, layer 0.

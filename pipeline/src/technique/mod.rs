@@ -13,15 +13,16 @@ mod params;
 use gnomon_raster::{Gpu, Subresource, TextureDescriptor, TextureId};
 use thiserror::Error;
 
-pub use frame::{CasterUse, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
+pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
 pub use params::{ParamInfo, Params};
 
 use crate::caster::RefusedCaster;
 use crate::error::LightError;
 use crate::scene::Scene;
 use crate::techniques::{
-    ConvolutionSoftShadows, PenumbraWedges, PenumbraWedgesRestructured, SampledShadowVolumes,
-    ShadowVolumes, SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed,
+    ConvolutionSoftShadows, Pcf, Pcss, PenumbraWedges, PenumbraWedgesRestructured,
+    SampledShadowVolumes, ShadowMap, ShadowMapsN, ShadowVolumes, SoftShadowVolumes,
+    SoftShadowVolumesOptimised, Unshadowed,
 };
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
@@ -93,6 +94,10 @@ pub fn techniques() -> &'static [&'static dyn Technique] {
         &PenumbraWedgesRestructured,
         &SoftShadowVolumes,
         &SoftShadowVolumesOptimised,
+        &ShadowMap,
+        &Pcf,
+        &Pcss,
+        &ShadowMapsN,
         &ConvolutionSoftShadows,
     ];
     LIST

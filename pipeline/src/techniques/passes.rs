@@ -139,6 +139,7 @@ impl Targets {
             },
             warnings: Vec::new(),
             casters: Vec::new(),
+            figures: Vec::new(),
         }
     }
 

@@ -44,9 +44,8 @@ use self::images::{BasisTextures, filtered};
 use self::needed::Needed;
 use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
-use super::light_view::{
-    CasterGeometry, FitTo, Fitted, Fitting, LightMap, Surroundings, ViewedLight, Views, views_of,
-};
+use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
+use super::mapped::{self, Notes, Said};
 use super::passes::{self, LitTest, SceneDraws, Targets};
 use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
 use crate::light::{Light, LightShape};
@@ -74,6 +73,9 @@ impl Technique for ConvolutionSoftShadows {
             settings::EDGES,
             settings::FORMAT,
             settings::MAP_SIZE,
+            mapped::NEAR,
+            mapped::VIEW,
+            mapped::FIT,
             settings::RINGING,
             settings::OFFSET,
             settings::STRENGTH,
@@ -118,18 +120,21 @@ impl Technique for ConvolutionSoftShadows {
                 .draws
                 .ambient_pass_with_positions(targets, &shadows.positions),
         ];
-        let mut warnings = Vec::new();
+        let mut notes = Notes::default();
         let visibility = VisibilityTexture::red(shadows.visibility);
         for &light in lights.iter().rev() {
             let label = |what: &str| passes::label(what, light, &lights);
             let viewed = ViewedLight::new(self.name(), &scene.lights[light], light)?;
-            list.extend(shadows.light_passes(&viewed, &label, &mut warnings));
-            warnings.extend(square_instead(&scene.lights[light], light));
+            list.extend(shadows.light_passes(&viewed, &label, &mut notes));
+            notes
+                .warnings
+                .extend(square_instead(&scene.lights[light], light));
             let test = LitTest::Visibility(visibility);
             list.push(shadows.draws.lit_pass(targets, light, &label("lit"), test));
         }
         let mut frame = shadows.targets.frame(list, visibility.output());
-        frame.warnings = warnings;
+        frame.warnings = notes.warnings;
+        frame.figures = notes.figures;
         Ok(frame)
     }
 }
@@ -179,29 +184,33 @@ impl Shadows<'_> {
         &self,
         light: &ViewedLight,
         label: &dyn Fn(&str) -> String,
-        warnings: &mut Vec<Warning>,
+        notes: &mut Notes,
     ) -> Vec<RenderPass> {
-        let fitting = Fitting {
-            size: self.settings.side,
-            near: None,
-            to: FitTo::Casters,
-        };
-        let views = views_of(light, &self.around, Views::Auto, &fitting);
+        let Settings { views, fitting, .. } = self.settings;
+        let views = views_of(light, &self.around, views, &fitting);
         let geometry = CasterGeometry::new(
             self.scene,
             &self.around,
             &self.draws.view,
             light.frame.centre,
         );
-        let mut list = Vec::new();
+        let (mut list, mut said) = (Vec::new(), Said::default());
         for fitted in &views {
-            warnings.extend(cut_casters(fitted));
+            said.add(fitted, self.offset(fitted), self.settings.side);
             list.extend(self.view_passes(light, fitted, &geometry, label, list.is_empty()));
         }
         if list.is_empty() {
             list.push(self.shadow_pass(label("convolution"), true, Vec::new()));
         }
+        said.into_notes(0.0, label, notes);
         list
+    }
+
+    /// What the series takes off receivers' depths, world units.
+    fn offset(&self, fitted: &Fitted) -> f64 {
+        let [near, far] = fitted.range;
+        let series = &self.settings.series;
+        series.offset() / series.reach() * (far - near)
     }
 
     fn view_passes(
@@ -346,16 +355,4 @@ fn mipmaps(half: [f64; 2], side: u32, sharper: f64) -> Mipmaps {
         probes: probes as u32,
         along,
     }
-}
-
-/// Casters nearer to the light than the view's near distance.
-fn cut_casters(fitted: &Fitted) -> Option<Warning> {
-    (fitted.cut > 0).then(|| Warning {
-        code: "casters-cut-by-light-view",
-        count: fitted.cut,
-        message: format!(
-            "{} triangles reach nearer to the light than a view's near distance, {}, and are cut there",
-            fitted.cut, fitted.range[0]
-        ),
-    })
 }

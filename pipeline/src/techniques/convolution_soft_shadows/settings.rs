@@ -1,5 +1,7 @@
 //! The technique's parameters.
 
+use super::super::light_view::{Fitting, Views};
+use super::super::mapped::MapParams;
 use crate::convolution::{Series, Suppression};
 use crate::technique::{ParamInfo, Params, TechniqueError};
 
@@ -112,6 +114,8 @@ pub(super) struct Settings {
     pub(super) all_float: bool,
     /// Texels along a side of the light view.
     pub(super) side: u32,
+    pub(super) fitting: Fitting,
+    pub(super) views: Views,
     pub(super) strength: f32,
     pub(super) falloff: f32,
     pub(super) iterations: u32,
@@ -142,13 +146,16 @@ impl Settings {
                 valid: "above 0: the average depth is divided by 1 - s",
             });
         }
+        let maps = MapParams::new(technique, params)?;
         Ok(Self {
+            fitting: maps.fitting,
+            views: maps.views,
             series: Series::new(terms, suppression, number(&OFFSET)),
             terms,
             filter,
             snapped: params.get(EDGES.name) == "texel",
             all_float: params.get(FORMAT.name) == "float",
-            side: number(&MAP_SIZE) as u32,
+            side: maps.fitting.size,
             strength: number(&STRENGTH) as f32,
             falloff: number(&FALLOFF) as f32,
             iterations: number(&ITERATE) as u32,

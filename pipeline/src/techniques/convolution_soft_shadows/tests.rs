@@ -4,6 +4,7 @@
 use glam::DVec3;
 use gnomon_raster::{Gpu, GpuConfig, Subresource, TextureDescriptor, TextureId};
 
+use super::super::light_view::{FitTo, Fitting, Views};
 use super::*;
 use crate::convolution::{Series, Suppression};
 use crate::scene::builtin;

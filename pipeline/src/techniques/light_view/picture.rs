@@ -28,7 +28,12 @@ pub(crate) struct LightMap {
     buffer: TextureId,
     /// Texels along a side.
     pub(crate) size: u32,
+    /// Texels by which slopes push surfaces away from the light: 0 unless set.
+    pub(crate) slope: f64,
 }
+
+/// The most that slopes push, in texels at the far distance.
+const SLOPE_LIMIT: f64 = 8.0;
 
 impl LightMap {
     /// Of `size` by `size` texels.
@@ -46,6 +51,7 @@ impl LightMap {
             depth: create("light view", Format::R32Float)?,
             buffer: create("light view depth", Format::Depth32FloatStencil8)?,
             size,
+            slope: 0.0,
         })
     }
 }
@@ -119,6 +125,8 @@ impl Fitted {
         let shader = PlanarDepth {
             rays: self.rays(geometry.reference, map.size),
             range: self.depth_range(),
+            slope: map.slope as f32,
+            slope_limit: (self.texel(map.size) * self.range[1] * SLOPE_LIMIT) as f32,
         };
         let pipeline = Arc::new(RenderPipeline {
             label: "light view".into(),

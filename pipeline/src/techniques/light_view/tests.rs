@@ -33,11 +33,17 @@ fn views(scene: &Scene, views: Views) -> Vec<Fitted> {
 
 /// The stored depths of a view, rows from the top.
 fn depths(scene: &Scene, fitted: &Fitted, skip: bool) -> Vec<f32> {
+    sloped(scene, fitted, skip, 0.0)
+}
+
+/// The same with a slope bias in texels.
+fn sloped(scene: &Scene, fitted: &Fitted, skip: bool, slope: f64) -> Vec<f32> {
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
     let view = View::new(&scene.camera, PICTURE);
     let around = Surroundings::new(scene, PICTURE);
     let geometry = CasterGeometry::new(scene, &around, &view, viewed(scene).frame.centre);
-    let map = LightMap::create(SIZE, &mut gpu).unwrap();
+    let mut map = LightMap::create(SIZE, &mut gpu).unwrap();
+    map.slope = slope;
     let pass = fitted.pass("light view".into(), &geometry, &view, &map, skip);
     gpu.submit(&CommandList { passes: vec![pass] }).unwrap();
     let texels = gpu.texture(map.depth).unwrap();
@@ -278,4 +284,29 @@ fn casters_at_the_light_are_counted() {
     assert!(cut(Some(0.04)) > 0);
     assert_eq!(cut(Some(0.06)), 0, "all of it is nearer");
     assert_eq!(cut(Some(0.01)), 0, "none of it is nearer");
+}
+
+/// A slope bias moves depths away from the light only, by no more than its limit,
+/// and leaves those of facets that face the light.
+#[test]
+fn slopes_push_surfaces_back_by_what_texels_need() {
+    let scene = builtin::build("creature").unwrap();
+    for fitted in views(&scene, Views::Auto) {
+        let plain = sloped(&scene, &fitted, true, 0.0);
+        let pushed = sloped(&scene, &fitted, true, 0.5);
+        let [near, far] = fitted.range;
+        let limit = 8.0 * fitted.texel(SIZE) * far / (far - near);
+        let moved: Vec<f64> = plain
+            .iter()
+            .zip(&pushed)
+            .map(|(a, b)| f64::from(b - a))
+            .collect();
+        assert!(moved.iter().all(|m| (0.0..=limit + 1e-6).contains(m)));
+        assert!(moved.iter().any(|m| *m > 0.1 * limit));
+    }
+    let scene = builtin::build("parallel-plates").unwrap();
+    for fitted in views(&scene, Views::Auto) {
+        let [plain, pushed] = [0.0, 0.5].map(|k| sloped(&scene, &fitted, true, k));
+        assert!(plain == pushed, "the plate faces the light");
+    }
 }

@@ -1,0 +1,121 @@
+//! Percentage-closer filtering: depths are compared one by one, then the outcomes
+//! are filtered by one kernel for all receivers (IMPLEMENTING §1.11). It hides the
+//! texels of hard shadows. It is no soft shadow: the kernel knows nothing of light
+//! and blockers, which the parallel plates show.
+
+use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps, Shadow, ShadowTo};
+
+use super::mapped::{self, Mapped, Margin, Sources};
+use super::passes;
+use crate::scene::Scene;
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+
+/// The registry's entry.
+pub(crate) struct Pcf;
+
+const KERNEL: ParamInfo = ParamInfo {
+    name: "kernel",
+    default: "box",
+    valid: "box|bicubic",
+    summary: "the mean of taps x taps texels, or the cubic B-spline over 16",
+};
+
+const TAPS: ParamInfo = ParamInfo {
+    name: "taps",
+    default: "4",
+    valid: "N",
+    summary: "texels along a side of the box kernel, 1 to 64",
+};
+
+const MOST_TAPS: u32 = 64;
+
+impl Technique for Pcf {
+    fn name(&self) -> &'static str {
+        "pcf"
+    }
+
+    fn summary(&self) -> &'static str {
+        "shadow mapping with edges blurred by a kernel of fixed width"
+    }
+
+    fn params(&self) -> &'static [ParamInfo] {
+        const PARAMS: &[ParamInfo] = &[
+            KERNEL,
+            TAPS,
+            mapped::MAP_SIZE,
+            mapped::BIAS,
+            mapped::SLOPE_BIAS,
+            mapped::NEAR,
+            mapped::VIEW,
+            mapped::FIT,
+            passes::LIGHT,
+            mapped::SKIP,
+            passes::SHADING,
+            passes::COLOR_FORMAT,
+            passes::DEPTH_FORMAT,
+        ];
+        PARAMS
+    }
+
+    fn frame(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Frame, TechniqueError> {
+        let taps = taps(self.name(), params)?;
+        let cubic = params.get(KERNEL.name) == "bicubic";
+        let width = if cubic { 4 } else { taps };
+        // As far as the farthest tap.
+        let margin = Margin {
+            bias: 0.5,
+            slope: f64::from(width) / 2.0,
+        };
+        let mapped = Mapped {
+            name: self.name(),
+            scene,
+            size,
+            params,
+            margin,
+        };
+        mapped.frame(
+            textures,
+            |light| Sources::centre(self.name(), scene, light),
+            |look_up, bias| {
+                let (mapping, to) = (look_up.mapping, ShadowTo::Visibility);
+                if cubic {
+                    let filter = CubicTaps;
+                    return Shadow {
+                        mapping,
+                        bias,
+                        filter,
+                        to,
+                    }
+                    .stage();
+                }
+                let filter = BoxTaps(taps);
+                Shadow {
+                    mapping,
+                    bias,
+                    filter,
+                    to,
+                }
+                .stage()
+            },
+        )
+    }
+}
+
+fn taps(technique: &'static str, params: &Params) -> Result<u32, TechniqueError> {
+    let taps = params.get(TAPS.name).parse().unwrap_or(0);
+    if (1..=MOST_TAPS).contains(&taps) {
+        return Ok(taps);
+    }
+    Err(TechniqueError::BadValue {
+        technique,
+        key: TAPS.name,
+        value: params.get(TAPS.name).to_owned(),
+        valid: "1 to 64",
+    })
+}

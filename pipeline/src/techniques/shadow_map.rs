@@ -1,0 +1,85 @@
+//! Shadow mapping: one look-up in a light view for each receiver (IMPLEMENTING
+//! §1.11). Hard shadows of the light's centre, with the resolution of the view.
+
+use gnomon_raster::state::ColorTargetState;
+use gnomon_shaders::shadow_maps::{BoxTaps, Shadow, ShadowTo};
+
+use super::light_view::ViewedLight;
+use super::mapped::{self, Mapped, Margin, Sources};
+use super::passes;
+use crate::scene::Scene;
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+
+/// The registry's entry.
+pub(crate) struct ShadowMap;
+
+impl Technique for ShadowMap {
+    fn name(&self) -> &'static str {
+        "shadow-map"
+    }
+
+    fn summary(&self) -> &'static str {
+        "hard shadows of the light's centre, looked up in a view from there"
+    }
+
+    fn params(&self) -> &'static [ParamInfo] {
+        const PARAMS: &[ParamInfo] = &[
+            mapped::MAP_SIZE,
+            mapped::BIAS,
+            mapped::SLOPE_BIAS,
+            mapped::NEAR,
+            mapped::VIEW,
+            mapped::FIT,
+            passes::LIGHT,
+            mapped::SKIP,
+            passes::SHADING,
+            passes::COLOR_FORMAT,
+            passes::DEPTH_FORMAT,
+        ];
+        PARAMS
+    }
+
+    fn frame(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Frame, TechniqueError> {
+        let mapped = Mapped {
+            name: self.name(),
+            scene,
+            size,
+            params,
+            margin: Margin::ONE_TEXEL,
+        };
+        mapped.frame(
+            textures,
+            |light| Sources::centre(self.name(), scene, light),
+            |look_up, bias| {
+                Shadow {
+                    mapping: look_up.mapping,
+                    bias,
+                    filter: BoxTaps(1),
+                    to: ShadowTo::Visibility,
+                }
+                .stage()
+            },
+        )
+    }
+}
+
+impl Sources {
+    /// The light's centre for all of it.
+    pub(super) fn centre(
+        technique: &'static str,
+        scene: &Scene,
+        light: usize,
+    ) -> Result<Self, TechniqueError> {
+        let viewed = ViewedLight::new(technique, &scene.lights[light], light)?;
+        Ok(Self {
+            lights: vec![viewed],
+            blend: ColorTargetState::OPAQUE,
+        })
+    }
+}

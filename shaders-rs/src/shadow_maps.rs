@@ -1,0 +1,395 @@
+//! Shadows looked up in light views: hard, filtered by a fixed kernel, or by one
+//! as wide as the light seems through the blockers (IMPLEMENTING §1.11).
+//!
+//! All draw one triangle over the screen for each view, with positions in texture
+//! 0 and the view's depths in texture 1. Fragments that are no receivers of the
+//! view are discarded before anything is looked up, so that fetches are counted
+//! where a shadow is looked for and nowhere else. Outside the picture nothing is
+//! in the way, and nothing is read there.
+//!
+//! A texel blocks where it is nearer to the light than the receiver by more than
+//! the bias: a distance along the view's axis, in world units.
+
+use std::sync::Arc;
+
+use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
+use gnomon_raster::{F32, I32, Lanes, Mask};
+
+use crate::light_view::LightMapping;
+use crate::soft_volumes::texel_of;
+use crate::vector::each2;
+
+/// Slot of the view's depths.
+const DEPTHS: usize = 1;
+
+/// Beyond these texels all coordinates are alike: outside.
+const FAR_OUTSIDE: f32 = 1_048_576.0;
+
+/// A receiver in a view.
+#[derive(Clone, Copy)]
+pub struct Receiver<L: Lanes> {
+    /// Where it is in the picture, in texels.
+    pub at: [F32<L>; 2],
+    /// Distance along the view's axis, world units.
+    pub distance: F32<L>,
+    /// Stored depths below this one block.
+    pub reference: F32<L>,
+}
+
+/// How the share of the light that is seen follows from depths near a receiver.
+pub trait ShadowFilter: Send + Sync {
+    /// The share that is seen, 0..=1. May discard lanes that are fully lit: what is
+    /// drawn to was cleared to that.
+    fn lit<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        mapping: &LightMapping,
+        receiver: &Receiver<L>,
+    ) -> F32<L>;
+}
+
+/// What is written to attachment 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShadowTo {
+    /// The share that is seen.
+    Visibility,
+    /// Minus this much of what is not seen, to be added: one of several views.
+    Share(f32),
+}
+
+/// Looks up shadows of one view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shadow<F> {
+    /// The view.
+    pub mapping: LightMapping,
+    /// By how much a blocker must be nearer than the receiver, world units.
+    pub bias: f32,
+    /// What is made of the depths.
+    pub filter: F,
+    /// What is written.
+    pub to: ShadowTo,
+}
+
+impl<F: ShadowFilter> FragmentShader for Shadow<F> {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentOutputs {
+            discards: true,
+            textures: 2,
+            ..FragmentOutputs::default()
+        }
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let own = [f.column(), f.row(), I32::splat(l, 0)];
+        let [x, y, z, shadowable] = texel_of(l, f, 0, own);
+        let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+        let mapping = &self.mapping;
+        let place = mapping.locate(l, [x, y, z]);
+        let receives = shadowable.gt(zero) & place.belongs;
+        f.discard(!receives);
+        if !(receives & f.live()).any() {
+            return;
+        }
+        let size = mapping.size as f32;
+        let at = each2(
+            #[inline(always)]
+            |k| {
+                let texels = (place.uv[k] * size).clamp(-FAR_OUTSIDE, FAR_OUTSIDE);
+                receives.select_f32(texels, zero)
+            },
+        );
+        let receiver = Receiver {
+            at,
+            distance: receives.select_f32(place.distance, one),
+            // What is cleared to never blocks.
+            reference: mapping.range.scaled(place.distance - self.bias).min(one),
+        };
+        let lit = self.filter.lit(l, f, mapping, &receiver);
+        let red = match self.to {
+            ShadowTo::Visibility => lit,
+            ShadowTo::Share(share) => (lit - one) * share,
+        };
+        f.set_color(0, [red, zero, zero, zero]);
+    }
+}
+
+/// 1 where the texel at (column, row) blocks, else 0.
+#[inline(always)]
+fn blocks<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    receiver: &Receiver<L>,
+    [column, row]: [I32<L>; 2],
+) -> F32<L> {
+    let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+    let depth = texel_of(l, f, DEPTHS, [column, row, I32::splat(l, 0)]);
+    // Alpha is 1 inside the picture and 0 outside.
+    let blocked = depth[3].gt(zero) & depth[0].lt(receiver.reference);
+    blocked.select_f32(one, zero)
+}
+
+/// The mean over `taps` x `taps` texels, those nearest to the receiver; one is the
+/// hard shadow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoxTaps(pub u32);
+
+impl ShadowFilter for BoxTaps {
+    #[inline(always)]
+    fn lit<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        _: &LightMapping,
+        receiver: &Receiver<L>,
+    ) -> F32<L> {
+        let half = self.0 as f32 * 0.5;
+        let [x, y] = each2(
+            #[inline(always)]
+            |k| (receiver.at[k] + (0.5 - half)).floor().to_i32(),
+        );
+        let mut blocked = F32::splat(l, 0.0);
+        for row in 0..self.0 as i32 {
+            for column in 0..self.0 as i32 {
+                let at = [x + I32::splat(l, column), y + I32::splat(l, row)];
+                blocked = blocked + blocks(l, f, receiver, at);
+            }
+        }
+        F32::splat(l, 1.0) - blocked / (self.0 * self.0) as f32
+    }
+}
+
+/// The cubic B-spline over 4 x 4 texels: smooth, and never negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CubicTaps;
+
+impl ShadowFilter for CubicTaps {
+    #[inline(always)]
+    fn lit<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        _: &LightMapping,
+        receiver: &Receiver<L>,
+    ) -> F32<L> {
+        let [(x, along), (y, down)] = each2(
+            #[inline(always)]
+            |k| spline(l, receiver.at[k] - 0.5),
+        );
+        let mut blocked = F32::splat(l, 0.0);
+        for (row, down) in down.into_iter().enumerate() {
+            let mut sum = F32::splat(l, 0.0);
+            for (column, along) in along.into_iter().enumerate() {
+                let at = [
+                    x + I32::splat(l, column as i32 - 1),
+                    y + I32::splat(l, row as i32 - 1),
+                ];
+                sum = sum + blocks(l, f, receiver, at) * along;
+            }
+            blocked = blocked + sum * down;
+        }
+        (F32::splat(l, 1.0) - blocked).clamp(0.0, 1.0)
+    }
+}
+
+/// The texel before `t` and the weights of it, its predecessor and two successors.
+#[inline(always)]
+fn spline<L: Lanes>(l: L, t: F32<L>) -> (I32<L>, [F32<L>; 4]) {
+    let whole = t.floor();
+    let t = t - whole;
+    let s = F32::splat(l, 1.0) - t;
+    let (t2, s2) = (t * t, s * s);
+    let sixth = 1.0 / 6.0;
+    let weights = [s2 * s * sixth, inner(t, t2), inner(s, s2), t2 * t * sixth];
+    (whole.to_i32(), weights)
+}
+
+/// Weight of the two texels in the middle, from the distance and its square.
+#[inline(always)]
+fn inner<L: Lanes>(t: F32<L>, squared: F32<L>) -> F32<L> {
+    (squared * (t * 3.0 - 6.0) + 4.0) * (1.0 / 6.0)
+}
+
+/// Percentage-closer soft shadows: the mean depth of the blockers round a receiver
+/// says how wide a kernel is needed. Half widths are of the light, world units.
+///
+/// Places are in -1..1 of the kernel's half widths; texels are taken as they are,
+/// the nearest ones.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampledKernel {
+    /// Half width of the light along the picture's axes.
+    pub light_half: [f32; 2],
+    /// Where blockers are looked for.
+    pub search: Arc<[[f32; 2]]>,
+    /// Where depths are compared.
+    pub filter: Arc<[[f32; 2]]>,
+}
+
+impl ShadowFilter for SampledKernel {
+    #[inline(always)]
+    fn lit<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        mapping: &LightMapping,
+        receiver: &Receiver<L>,
+    ) -> F32<L> {
+        let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+        let near = F32::splat(l, mapping.range.near);
+        let half = kernel(mapping, self.light_half, near, receiver);
+        let (mut count, mut sum) = (zero, zero);
+        for place in self.search.iter() {
+            let at = sample_at(receiver, half, *place);
+            let depth = texel_of(l, f, DEPTHS, [at[0], at[1], I32::splat(l, 0)]);
+            let blocked = depth[3].gt(zero) & depth[0].lt(receiver.reference);
+            count = count + blocked.select_f32(one, zero);
+            sum = sum + blocked.select_f32(depth[0], zero);
+        }
+        let some = count.gt(zero);
+        f.discard(!some);
+        if !some.any() {
+            return one;
+        }
+        let blocker = mapping.range.distance(sum / count.max(one));
+        let half = kernel(mapping, self.light_half, blocker, receiver);
+        let mut blocked = zero;
+        for place in self.filter.iter() {
+            blocked = blocked + blocks(l, f, receiver, sample_at(receiver, half, *place));
+        }
+        one - blocked / self.filter.len() as f32
+    }
+}
+
+/// Half widths of the kernel for blockers at a distance, in texels; half a texel
+/// at least.
+#[inline(always)]
+fn kernel<L: Lanes>(
+    mapping: &LightMapping,
+    light_half: [f32; 2],
+    blocker: F32<L>,
+    receiver: &Receiver<L>,
+) -> [F32<L>; 2] {
+    let size = mapping.size as f32;
+    each2(
+        #[inline(always)]
+        |k| {
+            let half = mapping.half_width(light_half[k], blocker, receiver.distance) * size;
+            half.clamp(0.5, FAR_OUTSIDE)
+        },
+    )
+}
+
+#[inline(always)]
+fn sample_at<L: Lanes>(receiver: &Receiver<L>, half: [F32<L>; 2], place: [f32; 2]) -> [I32<L>; 2] {
+    each2(
+        #[inline(always)]
+        |k| (receiver.at[k] + half[k] * place[k]).floor().to_i32(),
+    )
+}
+
+/// [`SampledKernel`] with every texel of the kernels, weighted by the area that
+/// they share with the texel: what sampling approaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WholeKernel {
+    /// Half width of the light along the picture's axes, world units.
+    pub light_half: [f32; 2],
+}
+
+impl ShadowFilter for WholeKernel {
+    #[inline(always)]
+    fn lit<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        mapping: &LightMapping,
+        receiver: &Receiver<L>,
+    ) -> F32<L> {
+        let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+        let near = F32::splat(l, mapping.range.near);
+        let half = kernel(mapping, self.light_half, near, receiver);
+        let every = Mask::splat(l, true);
+        let [count, sum] = blockers(l, f, mapping, receiver, half, every);
+        let some = count.gt(zero);
+        f.discard(!some);
+        if !(some & f.live()).any() {
+            return one;
+        }
+        let mean = some.select_f32(sum / count, zero);
+        let blocker = mapping.range.distance(mean);
+        let half = kernel(mapping, self.light_half, blocker, receiver);
+        let [blocked, _] = blockers(l, f, mapping, receiver, half, some);
+        (one - blocked / (half[0] * half[1] * 4.0)).clamp(0.0, 1.0)
+    }
+}
+
+/// Area of the blocking texels in the kernel, and the integral of their stored
+/// depths, both in texels; 0 in lanes that are not `wanted`.
+#[inline(always)]
+fn blockers<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    mapping: &LightMapping,
+    receiver: &Receiver<L>,
+    half: [F32<L>; 2],
+    wanted: Mask<L>,
+) -> [F32<L>; 2] {
+    let zero = F32::splat(l, 0.0);
+    let size = mapping.size as f32;
+    let wanted = wanted & f.live();
+    let columns = Span::new(receiver.at[0], half[0], size, wanted);
+    let rows = Span::new(receiver.at[1], half[1], size, wanted);
+    let (mut area, mut sum) = (zero, zero);
+    for row in 0..rows.count {
+        let y = rows.first + row as f32;
+        let height = rows.shared(y);
+        for column in 0..columns.count {
+            let x = columns.first + column as f32;
+            let weight = columns.shared(x) * height;
+            let read = weight.gt(zero) & wanted;
+            // Lanes that are done read nothing.
+            let outside = F32::splat(l, -1.0);
+            let at = [read.select_f32(x, outside).to_i32(), y.to_i32()];
+            let depth = texel_of(l, f, DEPTHS, [at[0], at[1], I32::splat(l, 0)]);
+            let blocked = read & depth[3].gt(zero) & depth[0].lt(receiver.reference);
+            let weight = blocked.select_f32(weight, zero);
+            area = area + weight;
+            sum = sum + weight * depth[0];
+        }
+    }
+    [area, sum]
+}
+
+/// Texels of a kernel along one axis, without those outside the picture, where
+/// nothing is in the way.
+struct Span<L: Lanes> {
+    low: F32<L>,
+    high: F32<L>,
+    first: F32<L>,
+    /// The most that any lane has.
+    count: i32,
+}
+
+impl<L: Lanes> Span<L> {
+    #[inline(always)]
+    fn new(middle: F32<L>, half: F32<L>, size: f32, wanted: Mask<L>) -> Self {
+        let low = (middle - half).clamp(0.0, size);
+        let high = (middle + half).clamp(0.0, size);
+        let first = low.floor();
+        let zero = F32::splat(middle.lanes(), 0.0);
+        let texels = wanted.select_f32(high.ceil() - first, zero);
+        Self {
+            low,
+            high,
+            first,
+            count: texels.to_i32().reduce_max(),
+        }
+    }
+
+    /// Length of the texel at `x` that is inside.
+    #[inline(always)]
+    fn shared(&self, x: F32<L>) -> F32<L> {
+        let zero = F32::splat(x.lanes(), 0.0);
+        ((x + 1.0).min(self.high) - x.max(self.low)).max(zero)
+    }
+}

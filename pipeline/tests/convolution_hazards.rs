@@ -211,7 +211,7 @@ fn positions() -> Vec<[f32; 4]> {
             pick(1),
             pick(5),
             pick(12),
-            if i % 17 == 0 { 0.0 } else { 1.0 },
+            if i.is_multiple_of(17) { 0.0 } else { 1.0 },
         ]
     };
     (0..(SIDE * SIDE) as usize).map(pixel).collect()

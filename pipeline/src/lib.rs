@@ -50,6 +50,7 @@ pub mod area_light;
 pub mod caster;
 pub mod chart;
 pub mod comparison;
+pub mod convolution;
 pub mod coverage;
 pub mod error;
 pub mod heat;

@@ -4,6 +4,7 @@
 //!   volumes alike
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
+//! * [`convolution`]: shadow maps that are filtered before they are compared
 //! * [`penumbra`]: penumbra wedges of papers I and II
 //! * [`shadow_maps`]: shadows looked up in light views
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
@@ -13,6 +14,7 @@
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
 //! that uses it decides targets, blending and tests.
 
+pub mod convolution;
 pub mod coverage;
 pub mod coverage_table;
 pub mod light_view;
@@ -53,6 +55,13 @@ stages!(FragmentStage:
     penumbra::crossing::WedgeCrossing, penumbra::inside::WedgeInside,
     penumbra::buffers::TileDepths, penumbra::buffers::Boundary,
     penumbra::buffers::StencilCounts);
+stages!(FragmentStage:
+    convolution::basis::BasisImages, convolution::basis::DepthImage,
+    convolution::prefilter::Halve, convolution::prefilter::CopyLevel,
+    convolution::prefilter::SumStep,
+    convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>,
+    convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>,
+    convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>);
 stages!(FragmentStage:
     light_view::PlanarDepth,
     shadow_maps::Shadow<shadow_maps::BoxTaps>, shadow_maps::Shadow<shadow_maps::CubicTaps>,

@@ -20,8 +20,9 @@ use crate::caster::RefusedCaster;
 use crate::error::LightError;
 use crate::scene::Scene;
 use crate::techniques::{
-    Pcf, Pcss, PenumbraWedges, PenumbraWedgesRestructured, SampledShadowVolumes, ShadowMap,
-    ShadowMapsN, ShadowVolumes, SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed,
+    ConvolutionSoftShadows, Pcf, Pcss, PenumbraWedges, PenumbraWedgesRestructured,
+    SampledShadowVolumes, ShadowMap, ShadowMapsN, ShadowVolumes, SoftShadowVolumes,
+    SoftShadowVolumesOptimised, Unshadowed,
 };
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
@@ -97,6 +98,7 @@ pub fn techniques() -> &'static [&'static dyn Technique] {
         &Pcf,
         &Pcss,
         &ShadowMapsN,
+        &ConvolutionSoftShadows,
     ];
     LIST
 }

@@ -223,9 +223,9 @@ impl Mapped<'_> {
 
 /// What is said of the views of a frame.
 #[derive(Default)]
-struct Notes {
-    warnings: Vec<Warning>,
-    figures: Vec<Figure>,
+pub(super) struct Notes {
+    pub(super) warnings: Vec<Warning>,
+    pub(super) figures: Vec<Figure>,
 }
 
 /// Views and look-ups of one light.
@@ -309,7 +309,7 @@ impl OneLight<'_> {
 
 /// What is to be said of a light's views, together.
 #[derive(Default)]
-struct Said {
+pub(super) struct Said {
     views: usize,
     cut: usize,
     limited: usize,
@@ -320,7 +320,7 @@ struct Said {
 }
 
 impl Said {
-    fn add(&mut self, fitted: &Fitted, bias: f64, size: u32) {
+    pub(super) fn add(&mut self, fitted: &Fitted, bias: f64, size: u32) {
         self.views += 1;
         self.cut += fitted.cut;
         self.limited += usize::from(fitted.limited);
@@ -331,7 +331,7 @@ impl Said {
         self.range = Some([nearest.min(near), farthest.max(far)]);
     }
 
-    fn into_notes(self, slope: f64, label: &dyn Fn(&str) -> String, notes: &mut Notes) {
+    pub(super) fn into_notes(self, slope: f64, label: &dyn Fn(&str) -> String, notes: &mut Notes) {
         let mut figure = |name: &str, value: f64| {
             let name = label(name);
             notes.figures.push(Figure { name, value });

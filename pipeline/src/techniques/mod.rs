@@ -1,6 +1,7 @@
 //! The techniques, one file each; the list is [`crate::technique::techniques`].
 
 mod casters;
+mod convolution_soft_shadows;
 mod given_visibility;
 mod light_view;
 mod mapped;
@@ -25,6 +26,7 @@ mod view;
 mod visibility;
 mod volume_draws;
 
+pub(crate) use convolution_soft_shadows::ConvolutionSoftShadows;
 pub(crate) use given_visibility::GivenVisibility;
 pub(crate) use pcf::Pcf;
 pub(crate) use pcss::Pcss;

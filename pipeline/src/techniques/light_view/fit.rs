@@ -180,7 +180,7 @@ fn sides(region: ViewRegion) -> &'static [fn(DVec3) -> f64] {
 }
 
 /// Calls `visit` with each receiver's part in the region beyond `near`.
-fn receivers_beyond(
+pub(super) fn receivers_beyond(
     around: &Surroundings<'_>,
     frame: &LightFrame,
     region: ViewRegion,

@@ -21,6 +21,7 @@ mod convex;
 mod fit;
 mod frame;
 mod picture;
+mod reads;
 mod surroundings;
 #[cfg(test)]
 mod tests;
@@ -30,6 +31,7 @@ use gnomon_shaders::light_view::ViewRegion;
 pub(crate) use fit::{FitTo, Fitted, Fitting};
 pub(crate) use frame::{LightExtent, LightFrame, ViewedLight};
 pub(crate) use picture::{CasterGeometry, LightMap};
+pub(crate) use reads::Reads;
 pub(crate) use surroundings::Surroundings;
 
 /// Largest tangent of a view to one side; beyond, a cube is better.

@@ -1,0 +1,166 @@
+//! Textures of basis images, and what becomes of them.
+
+use gnomon_raster::{Format, Sampler, TextureBinding, TextureDescriptor, TextureId};
+use gnomon_shaders::convolution::look_up::Images;
+use gnomon_shaders::convolution::{Atlas, Encoding};
+
+use super::settings::{Filter, MAP_SIZE, Settings};
+use crate::convolution::FixedPoint;
+use crate::technique::{TechniqueError, TextureSource};
+
+/// Textures of one size that are treated together, tile by tile.
+pub(super) struct Group {
+    pub(super) atlas: Atlas,
+    /// Tiles that hold something.
+    pub(super) tiles: usize,
+    pub(super) textures: Vec<ImageTexture>,
+}
+
+/// A texture of tiles, and a second one to write while the first is read.
+pub(super) struct ImageTexture {
+    pub(super) main: TextureId,
+    /// For tables of the same size; for mip chains, of the levels from the second.
+    pub(super) aside: TextureId,
+    pub(super) encoding: Encoding,
+}
+
+impl Group {
+    fn create(
+        atlas: Atlas,
+        tiles: usize,
+        filter: Filter,
+        kinds: &[(&str, Format, Encoding)],
+        textures: &mut dyn TextureSource,
+    ) -> Result<Self, TechniqueError> {
+        let [width, height] = atlas.size();
+        let levels = atlas.side.ilog2();
+        let mut create = |&(label, format, encoding): &(&str, Format, Encoding)| {
+            let main = TextureDescriptor::d2(label, format, width, height);
+            let beside = TextureDescriptor::d2(&format!("{label} aside"), format, width, height);
+            let (main, beside) = match filter {
+                Filter::Sat | Filter::SatU32 => (main, beside),
+                Filter::Mip => (
+                    TextureDescriptor {
+                        mip_levels: levels + 1,
+                        ..main
+                    },
+                    TextureDescriptor {
+                        size: [width / 2, height / 2, 1],
+                        mip_levels: levels,
+                        ..beside
+                    },
+                ),
+            };
+            Ok::<_, TechniqueError>(ImageTexture {
+                main: textures.create(&main)?,
+                aside: textures.create(&beside)?,
+                encoding,
+            })
+        };
+        Ok(Self {
+            atlas,
+            tiles,
+            textures: kinds.iter().map(&mut create).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Tiles of the group's texture `number` in `slot`.
+    pub(super) fn images(&self, number: usize, slot: usize) -> Images {
+        Images {
+            slot,
+            atlas: self.atlas,
+            encoding: self.textures[number].encoding,
+        }
+    }
+}
+
+/// All images of a light view; views use them in turn.
+pub(super) struct BasisTextures {
+    /// CSM and CSM-Z.
+    pub(super) series: Group,
+    /// Depth.
+    pub(super) depth: Group,
+}
+
+impl BasisTextures {
+    pub(super) fn create(
+        technique: &'static str,
+        settings: &Settings,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Self, TechniqueError> {
+        let pairs = settings.terms.div_ceil(2);
+        let tiles = if settings.filter == Filter::SatU32 {
+            4 * pairs
+        } else {
+            pairs
+        };
+        let atlas = atlas(technique, settings.side, tiles as u32)?;
+        let single = Atlas {
+            columns: 1,
+            rows: 1,
+            ..atlas
+        };
+        let [csm, csm_z, depth] = formats(settings);
+        let (filter, series) = (settings.filter, [("csm", csm), ("csm-z", csm_z)]);
+        let series = series.map(|(label, (format, encoding))| (label, format, encoding));
+        let depth = [("csm depth", depth.0, depth.1)];
+        Ok(Self {
+            series: Group::create(atlas, tiles, filter, &series, textures)?,
+            depth: Group::create(single, 1, filter, &depth, textures)?,
+        })
+    }
+}
+
+/// Formats and encodings of CSM, CSM-Z and depth (§6: two 8-bit and two 16-bit RGBA
+/// textures at M = 4 under mip chains, all 32-bit float under tables).
+fn formats(settings: &Settings) -> [(Format, Encoding); 3] {
+    let plain = |format| (format, Encoding::PLAIN);
+    match settings.filter {
+        Filter::SatU32 => {
+            let fixed = FixedPoint::of_tile(settings.side);
+            let signed = (Format::R32Uint, fixed.signed());
+            [signed, signed, (Format::R32Uint, fixed.unsigned())]
+        }
+        Filter::Mip if !settings.all_float => [
+            (Format::Rgba8Unorm, Encoding::UNIT),
+            plain(Format::Rgba16Float),
+            plain(Format::R32Float),
+        ],
+        Filter::Mip | Filter::Sat => [
+            plain(Format::Rgba32Float),
+            plain(Format::Rgba32Float),
+            plain(Format::R32Float),
+        ],
+    }
+}
+
+/// Tiles in rows as long as textures may be; their number is a power of two, so that
+/// borders between them stay exact in coordinates.
+fn atlas(technique: &'static str, side: u32, tiles: u32) -> Result<Atlas, TechniqueError> {
+    let most = gnomon_raster::MAX_TEXTURE_SIZE / side;
+    let columns = tiles.next_power_of_two().min(most);
+    let rows = tiles.div_ceil(columns).next_power_of_two();
+    if rows > most {
+        return Err(TechniqueError::BadValue {
+            technique,
+            key: MAP_SIZE.name,
+            value: side.to_string(),
+            valid: "up to 1024 with filter=sat-u32 and m above 8: textures end at 8192 texels",
+        });
+    }
+    Ok(Atlas {
+        side,
+        columns,
+        rows,
+    })
+}
+
+/// A texture for filtered look-ups, or for single texels of a table.
+pub(super) fn filtered(texture: TextureId, filter: Filter) -> TextureBinding {
+    let sampler = match filter {
+        Filter::Mip => Sampler::trilinear(),
+        Filter::Sat => Sampler::bilinear(),
+        Filter::SatU32 => Sampler::default(),
+    };
+    TextureBinding { texture, sampler }
+}

@@ -1,0 +1,56 @@
+//! What of a picture receivers read when they filter over what lies between them and
+//! the light.
+
+use super::fit::{Fitted, receivers_beyond};
+use super::frame::LightExtent;
+use super::surroundings::Surroundings;
+
+/// Bounds of filters' kernels in a picture, in its coordinates, 0..1 over it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Reads {
+    pub(crate) low: [f64; 2],
+    pub(crate) high: [f64; 2],
+    /// The largest half width and half height.
+    pub(crate) half: [f64; 2],
+}
+
+/// How much wider bounds are than in exact arithmetic, for shaders in f32.
+const ROUNDING: f64 = 1e-3;
+
+impl Fitted {
+    /// The kernels of all receivers seen, at the near distance, where they are widest;
+    /// `None` without receivers.
+    pub(crate) fn reads(&self, around: &Surroundings<'_>, extent: LightExtent) -> Option<Reads> {
+        let scale = 0.5 / self.half;
+        let near = self.range[0];
+        let light = [0, 1].map(|k| extent.half_along(self.frame.axes[k]) * scale);
+        let mut reads: Option<Reads> = None;
+        receivers_beyond(around, &self.frame, self.region, near, |polygon| {
+            let farthest = polygon.iter().map(|p| p.z).fold(near, f64::max);
+            let reach = (1.0 / near - 1.0 / farthest) * (1.0 + ROUNDING);
+            let half = light.map(|l| l * reach);
+            for p in polygon {
+                let place = [p.x / p.z, p.y / p.z];
+                let at = [0, 1].map(|k| 0.5 + (place[k] - self.middle[k]) * scale);
+                let grown = [0, 1].map(|k| half[k] + ROUNDING * (1.0 + at[k].abs()));
+                let own = Reads {
+                    low: [0, 1].map(|k| at[k] - grown[k]),
+                    high: [0, 1].map(|k| at[k] + grown[k]),
+                    half,
+                };
+                reads = Some(reads.map_or(own, |r| r.joined(&own)));
+            }
+        });
+        reads
+    }
+}
+
+impl Reads {
+    fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: [0, 1].map(|k| self.low[k].min(other.low[k])),
+            high: [0, 1].map(|k| self.high[k].max(other.high[k])),
+            half: [0, 1].map(|k| self.half[k].max(other.half[k])),
+        }
+    }
+}

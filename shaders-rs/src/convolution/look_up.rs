@@ -1,0 +1,476 @@
+//! Means of prefiltered images over a rectangle of the light view, at a cost that
+//! does not depend on its size.
+
+use gnomon_raster::math::{exp2, log2};
+use gnomon_raster::shader::Fragment;
+use gnomon_raster::simd::each4;
+use gnomon_raster::{F32, I32, Lanes, U32};
+
+use super::{Atlas, Encoding};
+use crate::coverage::outlined;
+
+/// Tiles of one kind in a texture slot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Images {
+    /// Texture slot.
+    pub slot: usize,
+    /// Where tiles are.
+    pub atlas: Atlas,
+    /// How values are stored.
+    pub encoding: Encoding,
+}
+
+/// A rectangle in image coordinates (u, v), 0..1 over the light view.
+#[derive(Clone, Copy)]
+pub struct Rectangle<L: Lanes> {
+    /// Its centre.
+    pub centre: [F32<L>; 2],
+    /// Half its width and height.
+    pub half: [F32<L>; 2],
+}
+
+/// A kind of prefiltered images.
+pub trait Prefiltered: Copy + Send + Sync {
+    /// What a rectangle comes to, for all look-ups over it.
+    type Window<L: Lanes>: Copy;
+
+    /// Prepares the look-ups over a rectangle.
+    fn window<L: Lanes>(&self, l: L, rectangle: &Rectangle<L>) -> Self::Window<L>;
+
+    /// The part of the rectangle that lies in the light view, 0..=1. No caster is
+    /// seen in the rest.
+    fn share<L: Lanes>(window: &Self::Window<L>) -> F32<L>;
+
+    /// The means of the four channels of tile `tile`.
+    fn four<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        images: &Images,
+        tile: usize,
+        window: &Self::Window<L>,
+    ) -> [F32<L>; 4];
+
+    /// The mean of an image of one channel.
+    fn one<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        image: &Images,
+        window: &Self::Window<L>,
+    ) -> F32<L>;
+}
+
+/// Part of `low..high` in `0..limit`, as a share of the whole; 0 where that is
+/// nothing.
+#[inline(always)]
+fn part<L: Lanes>(low: F32<L>, high: F32<L>, limit: f32) -> F32<L> {
+    let inside = high.min(F32::splat(low.lanes(), limit)) - low.clamp(0.0, f32::INFINITY);
+    (inside / (high - low)).clamp(0.0, 1.0)
+}
+
+/// Mip chains, looked up trilinearly: a square of the rectangle's area, or for
+/// rectangular lights several along its longer side, as anisotropic filters do (§5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mipmaps {
+    /// Texels along a side of a tile.
+    pub side: u32,
+    /// Added to the level whose texels are as wide as the square.
+    pub lod_bias: f32,
+    /// Squares along the longer side.
+    pub probes: u32,
+    /// The longer side: 0 is u, 1 is v.
+    pub along: usize,
+}
+
+/// Where [`Mipmaps`] look.
+#[derive(Clone, Copy)]
+pub struct Squares<L: Lanes> {
+    rectangle: Rectangle<L>,
+    lod: F32<L>,
+    /// Half a texel of the coarser level: nearer to a tile's border the filter would
+    /// reach into the next tile.
+    margin: F32<L>,
+    share: F32<L>,
+}
+
+impl Mipmaps {
+    /// Coordinates of probe `i` in a tile, 0..1.
+    #[inline(always)]
+    fn probe<L: Lanes>(&self, squares: &Squares<L>, i: u32) -> [F32<L>; 2] {
+        let mut at = squares.rectangle.centre;
+        let shift = (2 * i + 1) as f32 / self.probes as f32 - 1.0;
+        at[self.along] = at[self.along] + squares.rectangle.half[self.along] * shift;
+        let most = -squares.margin + 1.0;
+        for c in &mut at {
+            *c = c.max(squares.margin).min(most);
+        }
+        at
+    }
+}
+
+impl Prefiltered for Mipmaps {
+    type Window<L: Lanes> = Squares<L>;
+
+    #[inline(always)]
+    fn window<L: Lanes>(&self, l: L, r: &Rectangle<L>) -> Squares<L> {
+        let side = self.side as f32;
+        // No less than a texel, as lights without width have it.
+        let least = F32::splat(l, 0.5 / side);
+        let half = [r.half[0].max(least), r.half[1].max(least)];
+        let area = (half[0] * (2.0 * side)) * (half[1] * (2.0 * side));
+        let width = (area * (1.0 / self.probes as f32)).sqrt();
+        let levels = self.side.trailing_zeros() as f32;
+        let lod = (log2(width.clamp(1.0, side)) + self.lod_bias).clamp(0.0, levels);
+        let margin = exp2(lod.ceil()) * (0.5 / side);
+        let centre = r.centre;
+        let [u, v] = [0, 1];
+        let share = part(centre[u] - half[u], centre[u] + half[u], 1.0)
+            * part(centre[v] - half[v], centre[v] + half[v], 1.0);
+        Squares {
+            rectangle: Rectangle { centre, half },
+            lod,
+            margin,
+            share,
+        }
+    }
+
+    #[inline(always)]
+    fn share<L: Lanes>(squares: &Squares<L>) -> F32<L> {
+        squares.share
+    }
+
+    #[inline(always)]
+    fn four<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        images: &Images,
+        tile: usize,
+        squares: &Squares<L>,
+    ) -> [F32<L>; 4] {
+        let zero = F32::splat(l, 0.0);
+        let cell = images.atlas.cell(tile).map(|c| c as f32);
+        let scale = [images.atlas.columns, images.atlas.rows].map(|n| 1.0 / n as f32);
+        let mut sum = [zero; 4];
+        for i in 0..self.probes {
+            let [u, v] = self.probe(squares, i);
+            let at = [(u + cell[0]) * scale[0], (v + cell[1]) * scale[1], zero];
+            let texel = f.sample_level(images.slot, at, squares.lod);
+            sum = each4(
+                #[inline(always)]
+                |c| sum[c] + texel[c],
+            );
+        }
+        each4(
+            #[inline(always)]
+            |c| images.encoding.read(sum[c] * (1.0 / self.probes as f32)),
+        )
+    }
+
+    #[inline(always)]
+    fn one<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        image: &Images,
+        squares: &Squares<L>,
+    ) -> F32<L> {
+        self.four(l, f, image, 0, squares)[0]
+    }
+}
+
+/// Where a box's edges are between texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoxEdges {
+    /// Where they are.
+    Exact,
+    /// At the nearest border of texels.
+    Texel,
+}
+
+/// A box in texels of a tile: edges in 0..=side − 1, at least one texel apart.
+#[derive(Clone, Copy)]
+pub struct TexelBox<L: Lanes> {
+    /// Low and high edge of columns, then of rows.
+    edges: [[F32<L>; 2]; 2],
+    /// 1 / area.
+    per_texel: F32<L>,
+    share: F32<L>,
+}
+
+impl<L: Lanes> TexelBox<L> {
+    /// The tables' last column and row are sums without the last texels, which so
+    /// are never read: they count as outside.
+    #[inline(always)]
+    fn new(l: L, r: &Rectangle<L>, side: u32, snapped: BoxEdges) -> Self {
+        let limit = (side - 1) as f32;
+        let mut edges = [[F32::splat(l, 0.0); 2]; 2];
+        let mut share = F32::splat(l, 1.0);
+        for (k, axis) in edges.iter_mut().enumerate() {
+            let centre = r.centre[k] * side as f32;
+            let half = (r.half[k] * side as f32).max(F32::splat(l, 0.5));
+            let (low, high) = (centre - half, centre + half);
+            share = share * part(low, high, limit);
+            let mut low = low.clamp(0.0, limit - 1.0);
+            let mut high = high.clamp(0.0, limit);
+            if snapped == BoxEdges::Texel {
+                (low, high) = (low.round_ties_even(), high.round_ties_even());
+            }
+            *axis = [low, high.max(low + 1.0)];
+        }
+        let [[x0, x1], [y0, y1]] = edges;
+        Self {
+            edges,
+            per_texel: F32::splat(l, 1.0) / ((x1 - x0) * (y1 - y0)),
+            share,
+        }
+    }
+}
+
+/// Summed-area tables of floats, four channels a texel (Crow 1984): four look-ups a
+/// box, each bilinear where edges are [`BoxEdges::Exact`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloatTables {
+    /// Texels along a side of a tile.
+    pub side: u32,
+    /// Where edges are.
+    pub edges: BoxEdges,
+}
+
+impl FloatTables {
+    #[inline(always)]
+    fn corner<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        images: &Images,
+        tile: usize,
+        at: [F32<L>; 2],
+    ) -> [F32<L>; 4] {
+        let origin = images.atlas.origin(tile).map(|o| o as f32);
+        let [x, y] = [at[0] + origin[0], at[1] + origin[1]];
+        if self.edges == BoxEdges::Texel {
+            let at = [x.to_i32(), y.to_i32(), I32::splat(l, 0)];
+            return crate::soft_volumes::texel_of(l, f, images.slot, at);
+        }
+        let [w, h] = images.atlas.size().map(|s| 1.0 / s as f32);
+        let zero = F32::splat(l, 0.0);
+        f.sample_level(images.slot, [(x + 0.5) * w, (y + 0.5) * h, zero], zero)
+    }
+}
+
+impl Prefiltered for FloatTables {
+    type Window<L: Lanes> = TexelBox<L>;
+
+    #[inline(always)]
+    fn window<L: Lanes>(&self, l: L, rectangle: &Rectangle<L>) -> TexelBox<L> {
+        TexelBox::new(l, rectangle, self.side, self.edges)
+    }
+
+    #[inline(always)]
+    fn share<L: Lanes>(window: &TexelBox<L>) -> F32<L> {
+        window.share
+    }
+
+    #[inline(always)]
+    fn four<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        images: &Images,
+        tile: usize,
+        window: &TexelBox<L>,
+    ) -> [F32<L>; 4] {
+        let [[x0, x1], [y0, y1]] = window.edges;
+        let [a, b, c, d] = [
+            self.corner(l, f, images, tile, [x0, y0]),
+            self.corner(l, f, images, tile, [x1, y0]),
+            self.corner(l, f, images, tile, [x0, y1]),
+            self.corner(l, f, images, tile, [x1, y1]),
+        ];
+        each4(
+            #[inline(always)]
+            |i| {
+                let sum = (d[i] - c[i]) - (b[i] - a[i]);
+                images.encoding.read(sum * window.per_texel)
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn one<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        image: &Images,
+        window: &TexelBox<L>,
+    ) -> F32<L> {
+        self.four(l, f, image, 0, window)[0]
+    }
+}
+
+/// Summed-area tables of 32-bit integers that wrap, one channel a tile. A box's sum
+/// is exact where it is below 2³², whatever has wrapped before. Filters do not work
+/// on integers, so a box with [`BoxEdges::Exact`] is nine smaller ones from 16
+/// entries; one with [`BoxEdges::Texel`] takes four.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IntegerTables {
+    /// Texels along a side of a tile.
+    pub side: u32,
+    /// Where edges are.
+    pub edges: BoxEdges,
+}
+
+/// Entries along one axis, and the weights of the texels between them.
+#[derive(Clone, Copy)]
+struct Entries<L: Lanes> {
+    index: [I32<L>; 4],
+    weight: [F32<L>; 3],
+}
+
+impl IntegerTables {
+    /// The first `count` + 1 entries and `count` weights mean something.
+    #[inline(always)]
+    fn count(&self) -> usize {
+        if self.edges == BoxEdges::Exact { 3 } else { 1 }
+    }
+
+    #[inline(always)]
+    fn entries<L: Lanes>(&self, l: L, [low, high]: [F32<L>; 2], origin: u32) -> Entries<L> {
+        let origin = I32::splat(l, origin as i32);
+        let one = F32::splat(l, 1.0);
+        let [first, last] = [low.floor(), high.floor()];
+        let [i, j] = [first.to_i32(), last.to_i32()];
+        let next = I32::splat(l, 1);
+        // The last entry's texel has weight 0 there.
+        let most = I32::splat(l, self.side as i32 - 1);
+        if self.edges == BoxEdges::Texel {
+            let index = [i, j, j, j];
+            return Entries {
+                index: each4(
+                    #[inline(always)]
+                    |k| index[k] + origin,
+                ),
+                weight: [one; 3],
+            };
+        }
+        let index = [i, i + next, j, (j + next).min(most)];
+        Entries {
+            index: each4(
+                #[inline(always)]
+                |k| index[k] + origin,
+            ),
+            weight: [one - (low - first), one, high - last],
+        }
+    }
+
+    /// Sum of a channel over the box.
+    #[inline(always)]
+    fn sum<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        slot: usize,
+        [x, y]: [&Entries<L>; 2],
+    ) -> F32<L> {
+        let count = self.count();
+        let mut before = [U32::splat(l, 0); 3];
+        let mut sum = F32::splat(l, 0.0);
+        for row in 0..=count {
+            let mut entry = bits_of(l, f, slot, [x.index[0], y.index[row]]);
+            for column in 0..count {
+                let next = bits_of(l, f, slot, [x.index[column + 1], y.index[row]]);
+                let upwards = next - entry;
+                if row > 0 {
+                    let cell = float(l, upwards - before[column]);
+                    sum = sum + cell * x.weight[column] * y.weight[row - 1];
+                }
+                before[column] = upwards;
+                entry = next;
+            }
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn mean<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        images: &Images,
+        tile: usize,
+        window: &TexelBox<L>,
+    ) -> F32<L> {
+        let [column, row] = images.atlas.origin(tile);
+        let x = self.entries(l, window.edges[0], column);
+        let y = self.entries(l, window.edges[1], row);
+        let sum = self.sum(l, f, images.slot, [&x, &y]);
+        images.encoding.read(sum * window.per_texel)
+    }
+}
+
+impl Prefiltered for IntegerTables {
+    type Window<L: Lanes> = TexelBox<L>;
+
+    #[inline(always)]
+    fn window<L: Lanes>(&self, l: L, rectangle: &Rectangle<L>) -> TexelBox<L> {
+        TexelBox::new(l, rectangle, self.side, self.edges)
+    }
+
+    #[inline(always)]
+    fn share<L: Lanes>(window: &TexelBox<L>) -> F32<L> {
+        window.share
+    }
+
+    #[inline(always)]
+    fn four<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        images: &Images,
+        tile: usize,
+        window: &TexelBox<L>,
+    ) -> [F32<L>; 4] {
+        let mut means = [F32::splat(l, 0.0); 4];
+        for (channel, mean) in means.iter_mut().enumerate() {
+            *mean = self.mean(l, f, images, 4 * tile + channel, window);
+        }
+        means
+    }
+
+    #[inline(always)]
+    fn one<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        image: &Images,
+        window: &TexelBox<L>,
+    ) -> F32<L> {
+        self.mean(l, f, image, 0, window)
+    }
+}
+
+/// An integer of a texture, in a function of its own for all shaders.
+#[inline(always)]
+pub(super) fn bits_of<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    slot: usize,
+    [x, y]: [I32<L>; 2],
+) -> U32<L> {
+    let zero = I32::splat(l, 0);
+    outlined(
+        l,
+        #[inline(always)]
+        || f.fetch_texel_bits(slot, [x, y, zero], 0),
+    )
+}
+
+/// The nearest float, ties to even.
+#[inline(always)]
+fn float<L: Lanes>(l: L, v: U32<L>) -> F32<L> {
+    let high = (v >> 16).to_i32().to_f32();
+    let low = (v & U32::splat(l, 0xffff)).to_i32().to_f32();
+    high * 65536.0 + low
+}

@@ -1,0 +1,146 @@
+//! Prefiltering as render passes: mip levels and summed-area tables.
+//!
+//! A shader treats the same texel of up to four textures of one size and writes it
+//! to as many attachments.
+
+use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
+use gnomon_raster::simd::each4;
+use gnomon_raster::{F32, I32, Lanes, Mask, U32};
+
+use super::look_up::bits_of;
+use crate::soft_volumes::reads;
+
+/// Most textures that are treated at a time.
+pub const MAX_TEXTURES: usize = 4;
+
+/// A texel of a level, in a function of its own for all shaders.
+#[inline(always)]
+fn texel_at<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    slot: usize,
+    at: [I32<L>; 2],
+    mip: u32,
+) -> [F32<L>; 4] {
+    let zero = I32::splat(l, 0);
+    crate::coverage::outlined(
+        l,
+        #[inline(always)]
+        || f.fetch_texel(slot, [at[0], at[1], zero], mip),
+    )
+}
+
+/// A texel of the next level: the mean of the four under it, `((a + b) + (c + d))/4`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Halve {
+    /// Textures in slots from 0, attachments likewise.
+    pub textures: usize,
+    /// The level that is read.
+    pub mip: u32,
+}
+
+impl FragmentShader for Halve {
+    fn outputs(&self) -> FragmentOutputs {
+        reads(self.textures)
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let one = I32::splat(l, 1);
+        let [x, y] = [f.column() << 1, f.row() << 1];
+        for slot in 0..self.textures {
+            let [a, b, c, d] = [
+                texel_at(l, f, slot, [x, y], self.mip),
+                texel_at(l, f, slot, [x + one, y], self.mip),
+                texel_at(l, f, slot, [x, y + one], self.mip),
+                texel_at(l, f, slot, [x + one, y + one], self.mip),
+            ];
+            let mean = each4(
+                #[inline(always)]
+                |i| ((a[i] + b[i]) + (c[i] + d[i])) * 0.25,
+            );
+            f.set_color(slot, mean);
+        }
+    }
+}
+
+/// A level as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CopyLevel {
+    /// Textures in slots from 0, attachments likewise.
+    pub textures: usize,
+    /// The level that is read.
+    pub mip: u32,
+}
+
+impl FragmentShader for CopyLevel {
+    fn outputs(&self) -> FragmentOutputs {
+        reads(self.textures)
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let at = [f.column(), f.row()];
+        for slot in 0..self.textures {
+            let texel = texel_at(l, f, slot, at, self.mip);
+            f.set_color(slot, texel);
+        }
+    }
+}
+
+/// One step of recursive doubling (Hensley et al. 2005): to each entry of a tile the
+/// one `step` before it is added. After steps 1, 2, 4 … an entry is the sum of all up
+/// to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SumStep {
+    /// Textures in slots from 0, attachments likewise.
+    pub textures: usize,
+    /// 0: along rows; 1: along columns.
+    pub axis: usize,
+    /// Texels back.
+    pub step: u32,
+    /// Texels along a side of a tile, a power of two.
+    pub side: u32,
+    /// Sums of unsigned integers, modulo 2³².
+    pub integer: bool,
+}
+
+impl SumStep {
+    /// Where the other entry is, and where there is one; outside the texture where
+    /// there is none, so that nothing is read.
+    #[inline(always)]
+    fn before<L: Lanes>(&self, l: L, at: [I32<L>; 2]) -> ([I32<L>; 2], Mask<L>) {
+        let step = I32::splat(l, self.step as i32);
+        let within = at[self.axis] & I32::splat(l, self.side as i32 - 1);
+        let some = within.ge(step);
+        let mut other = at;
+        other[self.axis] = some.select_i32(at[self.axis] - step, I32::splat(l, -1));
+        (other, some)
+    }
+}
+
+impl FragmentShader for SumStep {
+    fn outputs(&self) -> FragmentOutputs {
+        reads(self.textures)
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let at = [f.column(), f.row()];
+        let (other, some) = self.before(l, at);
+        for slot in 0..self.textures {
+            if self.integer {
+                let (a, b) = (bits_of(l, f, slot, at), bits_of(l, f, slot, other));
+                let sum = a + some.select_u32(b, U32::splat(l, 0));
+                f.set_color_uint(slot, sum);
+            } else {
+                let (a, b) = (texel_at(l, f, slot, at, 0), texel_at(l, f, slot, other, 0));
+                let sum = each4(
+                    #[inline(always)]
+                    |i| some.select_f32(a[i] + b[i], a[i]),
+                );
+                f.set_color(slot, sum);
+            }
+        }
+    }
+}

@@ -50,6 +50,7 @@ pub mod area_light;
 pub mod caster;
 pub mod comparison;
 pub mod coverage;
+pub mod environment;
 pub mod error;
 pub mod heat;
 pub mod light;

@@ -12,6 +12,7 @@ pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
 
+use crate::environment::PlacedEnvironment;
 use crate::light::Light;
 use crate::mesh::Mesh;
 
@@ -32,6 +33,8 @@ pub struct Scene {
     pub background: [f32; 3],
     /// Image width and height asked for by a scene file.
     pub size: Option<[u32; 2]>,
+    /// What the lights stand for, if they were fitted to a map.
+    pub environment: Option<Arc<PlacedEnvironment>>,
     /// What was found amiss when the scene was made, without stopping it.
     pub warnings: Vec<SceneWarning>,
 }
@@ -47,6 +50,7 @@ impl Scene {
             ambient: [0.15; 3],
             background: [0.05, 0.06, 0.08],
             size: None,
+            environment: None,
             warnings: Vec::new(),
         }
     }

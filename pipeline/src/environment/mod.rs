@@ -40,6 +40,7 @@ pub mod fit;
 mod layout;
 mod place;
 mod read;
+mod request;
 mod sky;
 
 use std::path::Path;
@@ -48,6 +49,7 @@ pub use cube::CubeMap;
 pub use error::EnvironmentError;
 pub use fit::{AreaFit, Fit, FitSettings, LightForm, ResidualRule};
 pub use place::{DISTANCE, PlacedEnvironment, place};
+pub use request::{EnvironmentRequest, FittedMaps};
 
 use crate::scene::SceneWarning;
 use layout::Picture;

@@ -5,12 +5,14 @@ mod camera;
 pub mod file;
 mod frame_model;
 mod open;
+mod source;
 
 use std::sync::Arc;
 
 pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
+pub use source::SceneSource;
 
 use crate::environment::PlacedEnvironment;
 use crate::light::Light;

@@ -20,7 +20,7 @@ use crate::caster::RefusedCaster;
 use crate::error::LightError;
 use crate::scene::Scene;
 use crate::techniques::{
-    PenumbraWedges, PenumbraWedgesRestructured, SampledShadowVolumes, ShadowVolumes,
+    MixedLights, PenumbraWedges, PenumbraWedgesRestructured, SampledShadowVolumes, ShadowVolumes,
     SoftShadowVolumes, SoftShadowVolumesOptimised, Unshadowed,
 };
 
@@ -93,6 +93,7 @@ pub fn techniques() -> &'static [&'static dyn Technique] {
         &PenumbraWedgesRestructured,
         &SoftShadowVolumes,
         &SoftShadowVolumesOptimised,
+        &MixedLights,
     ];
     LIST
 }

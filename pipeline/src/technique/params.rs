@@ -9,7 +9,8 @@ pub struct ParamInfo {
     pub name: &'static str,
     /// Value where none is given.
     pub default: &'static str,
-    /// Values it takes, separated by `|`; `N` stands for any whole number from 0.
+    /// Values it takes, separated by `|`; `N` stands for any whole number from 0,
+    /// `TECHNIQUE` for a technique's name and settings, which it judges itself.
     pub valid: &'static str,
     /// One line for people.
     pub summary: &'static str,
@@ -18,9 +19,11 @@ pub struct ParamInfo {
 impl ParamInfo {
     fn takes(&self, value: &str) -> bool {
         let is_number = || !value.is_empty() && value.parse::<u32>().is_ok();
-        self.valid
-            .split('|')
-            .any(|v| if v == "N" { is_number() } else { v == value })
+        self.valid.split('|').any(|v| match v {
+            "N" => is_number(),
+            "TECHNIQUE" => !value.is_empty(),
+            word => word == value,
+        })
     }
 }
 

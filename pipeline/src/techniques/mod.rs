@@ -2,6 +2,7 @@
 
 mod casters;
 mod given_visibility;
+mod mixed_lights;
 mod near_pyramid;
 mod passes;
 mod penumbra;
@@ -17,6 +18,7 @@ mod visibility;
 mod volume_draws;
 
 pub(crate) use given_visibility::GivenVisibility;
+pub(crate) use mixed_lights::MixedLights;
 pub(crate) use penumbra_wedges::PenumbraWedges;
 pub(crate) use penumbra_wedges_restructured::PenumbraWedgesRestructured;
 pub(crate) use sampled_shadow_volumes::SampledShadowVolumes;

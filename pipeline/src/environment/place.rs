@@ -16,6 +16,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::cube::{axes, direction, luminance};
+use super::fit::BARE;
 use super::{AreaFit, CubeMap, Environment, EnvironmentError, Fit};
 use crate::light::{Light, LightShape};
 use crate::scene::{Scene, SceneWarning};
@@ -85,7 +86,7 @@ fn mean_radiance(cube: &CubeMap, units: [u64; 3]) -> [f32; 3] {
 
 fn uncovered(map: &Environment, fit: &Fit) -> Option<SceneWarning> {
     let share = luminance(fit.residual_energy()) as f64 / luminance(map.cube.total()) as f64;
-    (fit.uncovered > 0).then(|| SceneWarning {
+    (fit.bare_share(&map.cube) > BARE).then(|| SceneWarning {
         code: "environment-uncovered",
         count: fit.uncovered,
         message: format!(

@@ -17,7 +17,7 @@ pub(crate) struct EnvArgs {
     #[arg(long, value_name = "FORM", value_enum, requires = "env")]
     env_form: Option<FormArg>,
     /// A light grows where it gains more than this share of its energy [default:
-    /// the largest with which the lights cover the map]
+    /// the largest with which the lights cover 95% of the map's light]
     #[arg(long, value_name = "T", requires = "env")]
     env_threshold: Option<f64>,
     /// What a light leaves in its texels, which becomes ambient light: excess (the

@@ -63,6 +63,6 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
         }
     }
     text += "\nShown are the defaults, in brackets the values that are taken.\n\
-             N is any whole number from 0.";
+             N is any whole number from 0, TECHNIQUE a technique: NAME:KEY=VALUE:...";
     output::print(&text)
 }

@@ -1,10 +1,14 @@
 //! Scenes lit by environments: every technique draws them, the same bits however
 //! they are executed, nearer to the reference the more lights there are.
 
-use gnomon_pipeline::comparison::{Directions, EnvironmentReference, RadianceScore};
+use gnomon_pipeline::comparison::{
+    Directions, EnvironmentReference, RadianceScore, Reference, ReferenceKind,
+};
 use gnomon_pipeline::environment::{
     Environment, EnvironmentRequest, FitSettings, MapSettings, ResidualRule,
 };
+use gnomon_pipeline::light::HardLight;
+use gnomon_pipeline::metrics::visibility::VisibilityError;
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Scene, SceneSource};
 use gnomon_pipeline::technique::{Params, find, techniques};
@@ -182,5 +186,42 @@ fn maps_of_the_data_folder() {
             );
         }
         println!("{line}");
+    }
+}
+
+/// Shadows of fitted lights, a small, a large and one from below, against exact
+/// visibility: hard shadows averaged come near it; penumbra wedges have their
+/// known error where penumbrae overlap, hard shadows are far off.
+#[test]
+fn shadows_of_fitted_lights_are_right() {
+    let scene = under_sky("creature", lights(30));
+    let settings = RenderSettings {
+        size: [64, 48],
+        ..RenderSettings::default()
+    };
+    let below = scene
+        .lights
+        .iter()
+        .position(|l| matches!(l.hard(), HardLight::Point(p) if p.y < -9.0));
+    for light in [0, 2, below.unwrap()] {
+        let kind = ReferenceKind::Exact;
+        let truth = Reference::new(&scene, light, settings.size, kind, None, &|| {}).unwrap();
+        let rms = |name: &str, set: &[&str]| {
+            let technique = find(name).unwrap();
+            let own = format!("light={light}");
+            let set = set.iter().copied().chain([own.as_str()]);
+            let params = Params::parse(technique, set).unwrap();
+            let done = render(&scene, technique, &params, &settings).unwrap();
+            let under = truth.under(&done.depth).unwrap();
+            let score = VisibilityError::measure(&under.truth, done.size, &done.visibility);
+            score.unwrap().all.unwrap().rmse
+        };
+        let sampled = rms("sampled-shadow-volumes", &["samples=64"]);
+        let soft = rms("soft-shadow-volumes", &[]);
+        let unshadowed = rms("unshadowed", &[]);
+        println!("light {light}: {sampled:.4} {soft:.4} {unshadowed:.4}");
+        assert!(sampled < 0.025, "light {light}: {sampled}");
+        assert!(soft < 0.09, "light {light}: {soft}");
+        assert!(unshadowed > 2.0 * soft, "light {light}: {unshadowed}");
     }
 }

@@ -1,10 +1,14 @@
 //! The command line: verbs, flags and the values they take.
 
+mod environment;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use gnomon_pipeline::comparison::{ReferenceKind, UnknownReference};
 use gnomon_raster::{GpuConfig, MAX_TEXTURE_SIZE, MAX_THREADS, SimdLevel};
+
+pub(crate) use environment::EnvArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -72,8 +76,9 @@ pub(crate) struct RenderArgs {
     /// Image size in pixels [default: the scene file's, or else 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
-    /// Picture to write [default: out/SCENE-TECHNIQUE.png]
-    #[arg(long, value_name = "FILE.png")]
+    /// Picture to write [default: out/SCENE-TECHNIQUE.png]; with --frames the folder
+    /// of frame-0000.png and so on [default: out/SCENE-TECHNIQUE]
+    #[arg(long, value_name = "FILE.png|DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Also write visibility, 1 = fully lit, as a float32 array (height, width)
     #[arg(long, value_name = "FILE.npy")]
@@ -84,12 +89,27 @@ pub(crate) struct RenderArgs {
     /// Frames to time; the median is reported
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) repeat: u32,
+    /// The time of animated scenes, in seconds: of the picture, or of the first frame
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_time, allow_negative_numbers = true)]
+    pub(crate) time: f64,
+    /// Render that many frames of an animation, each afresh
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) frames: Option<u32>,
+    /// Frames per second of an animation [default: 24]
+    #[arg(long, value_name = "F", value_parser = parse_rate, requires = "frames")]
+    pub(crate) fps: Option<f64>,
     /// How to execute.
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
     /// Print one JSON document on stdout, the summary on stderr
     #[arg(long)]
     pub(crate) json: bool,
+    /// A map that lights the scene.
+    #[command(flatten)]
+    pub(crate) environment: EnvArgs,
+    /// Most area lights fitted to the map, 1 to 1024 [default: 30]
+    #[arg(long, value_name = "N", requires = "env")]
+    pub(crate) lights: Option<usize>,
 }
 
 /// Flags of `compare`.
@@ -120,17 +140,37 @@ pub(crate) struct CompareArgs {
     /// Frames to time; the median is reported
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) repeat: u32,
+    /// The time of animated scenes, in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_time, allow_negative_numbers = true)]
+    pub(crate) time: f64,
     /// How to execute.
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
     /// Print one JSON document on stdout, the table on stderr
     #[arg(long)]
     pub(crate) json: bool,
+    /// A map that lights the scene: all lights shine, and light is compared with
+    /// that of sampled directions.
+    #[command(flatten)]
+    pub(crate) environment: EnvArgs,
+    /// Numbers of area lights to compare [default: 30,45,60]
+    #[arg(
+        long,
+        value_name = "N,...",
+        value_delimiter = ',',
+        requires = "env",
+        conflicts_with = "light"
+    )]
+    pub(crate) lights: Vec<usize>,
+    /// Directions of the reference
+    #[arg(long, value_name = "N", default_value_t = 1024, requires = "env", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) directions: u32,
 }
 
 const COMPARE_HELP: &str = "\
 Example: gnomon compare cylinder \
 --techniques shadow-volumes,sampled-shadow-volumes:samples=16,sampled-shadow-volumes:samples=256
+With --env: gnomon compare creature --env sky --lights 30,60 --techniques soft-shadow-volumes
 
 Exit codes: 0 fine, 2 bad input.";
 
@@ -228,6 +268,8 @@ pub(crate) enum OverlayKind {
     Silhouette,
     /// Sides of the shadow volumes
     Volumes,
+    /// The map of the environment with the fitted lights outlined
+    EnvLights,
 }
 
 impl OverlayKind {
@@ -239,6 +281,7 @@ impl OverlayKind {
             Self::Traffic => "traffic",
             Self::Silhouette => "silhouette",
             Self::Volumes => "volumes",
+            Self::EnvLights => "env-lights",
         }
     }
 }
@@ -289,6 +332,20 @@ fn parse_technique_setting(text: &str) -> Result<TechniqueSetting, String> {
 
 fn parse_reference(text: &str) -> Result<ReferenceKind, String> {
     text.parse().map_err(|e: UnknownReference| e.to_string())
+}
+
+fn parse_time(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds.is_finite() => Ok(seconds),
+        _ => Err("expected a finite number of seconds".to_owned()),
+    }
+}
+
+fn parse_rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
+        _ => Err("expected a number of frames per second above 0".to_owned()),
+    }
 }
 
 fn parse_threads(text: &str) -> Result<usize, String> {

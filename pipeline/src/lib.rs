@@ -52,6 +52,7 @@ pub mod chart;
 pub mod comparison;
 pub mod convolution;
 pub mod coverage;
+pub mod environment;
 pub mod error;
 pub mod heat;
 pub mod light;

@@ -40,6 +40,8 @@ pub struct Rendered {
     pub size: [u32; 2],
     /// The picture, sRGB-encoded, rows from the top.
     pub srgb: Vec<[u8; 4]>,
+    /// The same in linear light, before it is limited to 0..=1.
+    pub color: Vec<[f32; 3]>,
     /// Light's visibility, rows from the top: 1 fully lit, 0 in shadow, NaN
     /// where no surface is seen. With several lights that of the first one.
     pub visibility: Vec<f32>,
@@ -170,6 +172,7 @@ fn read_back(
     Ok(Rendered {
         size,
         srgb: color.iter().map(|t| encoder.encode(t.0)).collect(),
+        color: color.iter().map(|t| [t.0[0], t.0[1], t.0[2]]).collect(),
         visibility: visibility(gpu, frame.outputs.visibility, &depth, &stencil)?,
         depth,
         stencil,

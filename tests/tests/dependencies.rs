@@ -46,7 +46,6 @@ const RASTER_NEEDS: &[&str] = &["bytemuck", "fearless_simd", "half", "rayon", "t
 const REPORTING: &[&str] = &[
     "clap",
     "comfy-table",
-    "image",
     "indicatif",
     "serde_json",
     "tiny-skia",
@@ -177,6 +176,23 @@ fn reporting_stays_in_the_command_line() {
             .filter(|n| REPORTING.contains(&n.as_str()))
             .collect();
         assert!(found.is_empty(), "{folder} needs {found:?}");
+    }
+}
+
+/// Environment maps are input: one file of the pipeline decodes them, and none
+/// encodes pictures.
+#[test]
+fn pictures_are_decoded_in_one_place_of_the_pipeline() {
+    let found = lines_with(&root().join("pipeline/src"), &["image::{", "use image"]);
+    let ours = |code: &str| code.contains("use image::");
+    let users: Vec<_> = found.iter().filter(|(_, line)| ours(line)).collect();
+    assert!(!users.is_empty());
+    for (path, line) in users {
+        let only = path.ends_with("environment/read.rs");
+        assert!(only, "{}: {line}", path.display());
+    }
+    for folder in ["raster", "shaders-rs"] {
+        assert!(!needs(&manifest(folder)).contains(&"image".to_owned()));
     }
 }
 

@@ -115,6 +115,19 @@ pub(crate) fn check_extension(
     })
 }
 
+/// Refuses a folder that is a file, or that is called like a picture.
+pub(crate) fn check_folder(flag: &'static str, folder: &Path) -> Result<(), CliError> {
+    let extension = folder.extension().unwrap_or_default();
+    if folder.is_file() || extension.eq_ignore_ascii_case("png") {
+        return Err(CliError::Flag {
+            flag,
+            value: folder.display().to_string(),
+            valid: "expected the name of a folder".to_owned(),
+        });
+    }
+    check_target(&folder.join("frame-0000.png"))
+}
+
 fn folder_of(target: &Path) -> &Path {
     match target.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,

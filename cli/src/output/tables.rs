@@ -80,6 +80,61 @@ pub(crate) struct Named<'a> {
     pub(crate) done: &'a Rendered,
 }
 
+/// Most rows of a frame before passes that differ by a number are one.
+const MOST_ROWS: usize = 24;
+
+/// A pass, or passes of many lights together.
+struct PassRow {
+    name: String,
+    count: usize,
+    ms: f64,
+    counters: Counters,
+}
+
+/// The passes of a frame; where they are too many to read, those of one kind
+/// together, such as `wedges x30`.
+fn pass_rows(done: &Rendered) -> Vec<PassRow> {
+    let passes = &done.report.passes;
+    let name = |label: &str| {
+        if passes.len() > MOST_ROWS {
+            kind(label)
+        } else {
+            label.to_owned()
+        }
+    };
+    let mut rows: Vec<PassRow> = Vec::new();
+    for (pass, (_, ms)) in passes.iter().zip(&done.pass_ms) {
+        let name = name(&pass.label);
+        let known = rows
+            .iter_mut()
+            .find(|r| r.name == name && passes.len() > MOST_ROWS);
+        match known {
+            Some(row) => {
+                row.count += 1;
+                row.ms += ms;
+                row.counters.add(&pass.totals());
+            }
+            None => rows.push(PassRow {
+                name,
+                count: 1,
+                ms: *ms,
+                counters: pass.totals(),
+            }),
+        }
+    }
+    for row in rows.iter_mut().filter(|r| r.count > 1) {
+        row.name += &format!(" x{}", row.count);
+    }
+    rows
+}
+
+/// A pass's label without the number of its light.
+fn kind(label: &str) -> String {
+    let words = label.split(' ');
+    let words = words.filter(|w| !w.bytes().all(|b| b.is_ascii_digit()));
+    words.collect::<Vec<_>>().join(" ")
+}
+
 /// Fragments and what was skipped, pass by pass.
 pub(crate) fn work(frames: &[Named<'_>]) -> Table {
     let header = [
@@ -100,10 +155,9 @@ pub(crate) fn work(frames: &[Named<'_>]) -> Table {
     for frame in frames {
         table.rows.push(vec![frame.label.to_owned()]);
         let mut sum = Counters::default();
-        for (pass, (_, ms)) in frame.done.report.passes.iter().zip(&frame.done.pass_ms) {
-            let counters = pass.totals();
-            sum.add(&counters);
-            table.rows.push(work_row(&pass.label, *ms, &counters));
+        for row in pass_rows(frame.done) {
+            sum.add(&row.counters);
+            table.rows.push(work_row(&row.name, row.ms, &row.counters));
         }
         table
             .rows
@@ -145,10 +199,11 @@ pub(crate) fn traffic(frames: &[Named<'_>]) -> Table {
     for frame in frames {
         table.rows.push(vec![frame.label.to_owned()]);
         let mut sum = Counters::default();
-        for pass in &frame.done.report.passes {
-            let counters = pass.totals();
-            sum.add(&counters);
-            table.rows.push(traffic_row(&pass.label, &counters.traffic));
+        for row in pass_rows(frame.done) {
+            sum.add(&row.counters);
+            table
+                .rows
+                .push(traffic_row(&row.name, &row.counters.traffic));
         }
         let clear = clears(&frame.done.report);
         table.rows.push(traffic_row("clears", &clear.traffic));

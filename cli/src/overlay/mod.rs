@@ -1,5 +1,6 @@
 //! Pictures that explain a render, one file each.
 
+mod env_lights;
 mod overdraw;
 mod sides;
 mod silhouette;
@@ -54,6 +55,7 @@ pub(crate) fn draw(kind: OverlayKind, source: &Source<'_>) -> Picture {
         OverlayKind::Traffic => traffic::draw(source),
         OverlayKind::Silhouette => silhouette::draw(source),
         OverlayKind::Volumes => volumes::draw(source),
+        OverlayKind::EnvLights => env_lights::draw(source),
     }
 }
 

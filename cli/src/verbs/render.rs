@@ -1,10 +1,12 @@
 //! `gnomon render`.
 
+mod frames;
+
 use std::path::{Path, PathBuf};
 
 use gnomon_pipeline::heat::{self, Heat};
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{self, Scene};
+use gnomon_pipeline::scene::{Scene, SceneSource};
 use gnomon_pipeline::technique::{Params, Technique, find};
 use gnomon_pipeline::wedge_work::WedgeWork;
 
@@ -29,8 +31,11 @@ struct Job {
     overlays: Vec<(OverlayKind, PathBuf)>,
 }
 
-/// Renders one frame and writes what was asked for.
+/// Renders one frame, or an animation, and writes what was asked for.
 pub(crate) fn run(args: &RenderArgs) -> Result<(), CliError> {
+    if let Some(count) = args.frames {
+        return frames::run(args, count);
+    }
     let progress = Progress::new(3 + args.overlay.len() as u64);
     progress.doing("loading the scene");
     let job = Job::new(args)?;
@@ -41,14 +46,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let files = write(&job, args, &done, &progress)?;
     drop(progress);
     if args.json {
-        let of = RenderJob {
-            scene: &job.scene,
-            technique: job.technique,
-            params: &job.params,
-            gpu: job.settings.gpu,
-            repeat: job.settings.repeat,
-        };
-        output::print_json(&RenderDocument::new(of, &done, files.clone()))?;
+        output::print_json(&job.document(&done, files.clone()))?;
     }
     output::print_summary(&summary(&job, &done, &files), args.json)
 }
@@ -63,12 +61,21 @@ impl Job {
         if let Some(visibility) = &args.visibility {
             files::check_extension("--visibility", visibility, "npy")?;
         }
-        let scene = scene::open(&args.scene)?;
+        let scene = source(args)?.at(args.time)?;
+        Self::of(args, technique, params, scene, args.out.clone())
+    }
+
+    /// The picture of `scene`, written to `out` or where it is by default.
+    fn of(
+        args: &RenderArgs,
+        technique: &'static dyn Technique,
+        params: Params,
+        scene: Scene,
+        out: Option<PathBuf>,
+    ) -> Result<Self, CliError> {
+        check_overlays(args, &scene)?;
         let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
-        let out = args
-            .out
-            .clone()
-            .unwrap_or_else(|| default_out(&scene.name, technique.name()));
+        let out = out.unwrap_or_else(|| default_out(&scene.name, technique.name()));
         files::check_target(&out)?;
         Ok(Self {
             scene,
@@ -82,6 +89,17 @@ impl Job {
             overlays: overlay_paths(&args.overlay, &out),
             out,
         })
+    }
+
+    fn document(&self, done: &Rendered, files: Vec<FileDocument>) -> RenderDocument {
+        let of = RenderJob {
+            scene: &self.scene,
+            technique: self.technique,
+            params: &self.params,
+            gpu: self.settings.gpu,
+            repeat: self.settings.repeat,
+        };
+        RenderDocument::new(of, done, files)
     }
 
     fn heat(&self) -> Result<Option<Heat>, CliError> {
@@ -99,6 +117,25 @@ impl Job {
             &self.settings,
         )?))
     }
+}
+
+/// Scenes by time, under the environment that was asked for.
+fn source(args: &RenderArgs) -> Result<SceneSource, CliError> {
+    let request = args.environment.request(args.lights);
+    Ok(SceneSource::open(&args.scene)?.with_environment(request))
+}
+
+/// Refuses an overlay of what the scene does not have.
+fn check_overlays(args: &RenderArgs, scene: &Scene) -> Result<(), CliError> {
+    let wanted = args.overlay.contains(&OverlayKind::EnvLights);
+    if !wanted || scene.environment.is_some() {
+        return Ok(());
+    }
+    Err(CliError::Flag {
+        flag: "--overlay",
+        value: OverlayKind::EnvLights.name().to_owned(),
+        valid: "the scene has no environment; give one with --env MAP".to_owned(),
+    })
 }
 
 /// `out/<scene>-<technique>.png`.

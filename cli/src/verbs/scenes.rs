@@ -22,6 +22,8 @@ struct SceneDocument {
     objects: usize,
     casters: usize,
     lights: usize,
+    /// Whether it changes with `--time`.
+    animated: bool,
 }
 
 impl SceneDocument {
@@ -34,6 +36,7 @@ impl SceneDocument {
             objects: scene.objects.len(),
             casters: scene.casters().count(),
             lights: scene.lights.len(),
+            animated: entry.moves(),
         }
     }
 }

@@ -29,6 +29,7 @@
 //! ```
 
 mod aligned;
+mod environment;
 mod reference;
 mod score;
 mod shaded;
@@ -37,6 +38,7 @@ mod sight;
 use thiserror::Error;
 
 pub use aligned::Aligned;
+pub use environment::{Directions, EnvironmentReference, RadianceScore};
 pub use reference::{Origin, RAYS_SEED, RAYS_SIDE, Reference, ReferenceKind, UnknownReference};
 pub use score::{BANDING_EDGE, Score};
 pub use shaded::{ShadingKey, shaded};

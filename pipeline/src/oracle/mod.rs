@@ -8,6 +8,7 @@
 pub mod area;
 pub mod bvh;
 pub mod cache;
+pub mod environment;
 pub mod hard;
 pub mod plates;
 pub mod sampled;

@@ -6,6 +6,7 @@ pub mod file;
 mod frame_model;
 mod open;
 mod placed;
+mod source;
 
 use std::sync::Arc;
 
@@ -13,7 +14,9 @@ pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
 pub use placed::PlacedError;
+pub use source::SceneSource;
 
+use crate::environment::PlacedEnvironment;
 use crate::light::Light;
 use crate::mesh::Mesh;
 
@@ -34,6 +37,8 @@ pub struct Scene {
     pub background: [f32; 3],
     /// Image width and height asked for by a scene file.
     pub size: Option<[u32; 2]>,
+    /// What the lights stand for, if they were fitted to a map.
+    pub environment: Option<Arc<PlacedEnvironment>>,
     /// What was found amiss when the scene was made, without stopping it.
     pub warnings: Vec<SceneWarning>,
 }
@@ -49,6 +54,7 @@ impl Scene {
             ambient: [0.15; 3],
             background: [0.05, 0.06, 0.08],
             size: None,
+            environment: None,
             warnings: Vec::new(),
         }
     }

@@ -1,11 +1,10 @@
 //! Any scene by what a user calls it.
 
-use std::path::Path;
-
 use thiserror::Error;
 
-use super::file::{self, SceneFileError};
-use super::{Scene, builtin, load_and_frame};
+use super::file::SceneFileError;
+use super::{Scene, SceneSource};
+use crate::environment::EnvironmentError;
 use crate::error::UnknownScene;
 use crate::obj::ObjError;
 
@@ -21,21 +20,17 @@ pub enum SceneError {
     /// A model is wrong.
     #[error(transparent)]
     Model(#[from] ObjError),
+    /// The environment is wrong.
+    #[error(transparent)]
+    Environment(#[from] EnvironmentError),
 }
 
-/// The scene called `name`: a `.toml` scene file, an `.obj` model to be framed,
-/// or else a built-in name.
+/// The scene called `name` at time 0: see [`SceneSource::open`].
 ///
 /// # Errors
 /// The file is wrong, or there is no built-in scene of that name.
 pub fn open(name: &str) -> Result<Scene, SceneError> {
-    let path = Path::new(name);
-    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    match extension.to_str() {
-        Some("toml") => Ok(file::load(path)?),
-        Some("obj") => Ok(load_and_frame(path)?),
-        _ => Ok(builtin::build(name)?),
-    }
+    SceneSource::open(name)?.at(0.0)
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ use crate::caster::RefusedCaster;
 use crate::error::LightError;
 use crate::scene::Scene;
 use crate::techniques::{
-    ConvolutionSoftShadows, Pcf, Pcss, PenumbraWedges, PenumbraWedgesRestructured,
+    ConvolutionSoftShadows, MixedLights, Pcf, Pcss, PenumbraWedges, PenumbraWedgesRestructured,
     SampledShadowVolumes, ShadowMap, ShadowMapsN, ShadowVolumes, SoftShadowVolumes,
     SoftShadowVolumesOptimised, Unshadowed,
 };
@@ -99,6 +99,7 @@ pub fn techniques() -> &'static [&'static dyn Technique] {
         &Pcss,
         &ShadowMapsN,
         &ConvolutionSoftShadows,
+        &MixedLights,
     ];
     LIST
 }

@@ -10,7 +10,8 @@ pub struct ParamInfo {
     /// Value where none is given.
     pub default: &'static str,
     /// Values it takes, separated by `|`; `N` stands for any whole number from 0,
-    /// `X` for any decimal number from 0.
+    /// `X` for any decimal number from 0, `TECHNIQUE` for a technique's name and
+    /// settings, which it judges itself.
     pub valid: &'static str,
     /// One line for people.
     pub summary: &'static str,
@@ -27,6 +28,7 @@ impl ParamInfo {
         self.valid.split('|').any(|v| match v {
             "N" => is_number(),
             "X" => is_decimal(),
+            "TECHNIQUE" => !value.is_empty(),
             word => word == value,
         })
     }

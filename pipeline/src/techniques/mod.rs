@@ -5,6 +5,7 @@ mod convolution_soft_shadows;
 mod given_visibility;
 mod light_view;
 mod mapped;
+mod mixed_lights;
 mod near_pyramid;
 mod passes;
 mod pcf;
@@ -28,6 +29,7 @@ mod volume_draws;
 
 pub(crate) use convolution_soft_shadows::ConvolutionSoftShadows;
 pub(crate) use given_visibility::GivenVisibility;
+pub(crate) use mixed_lights::MixedLights;
 pub(crate) use pcf::Pcf;
 pub(crate) use pcss::Pcss;
 pub(crate) use penumbra_wedges::PenumbraWedges;

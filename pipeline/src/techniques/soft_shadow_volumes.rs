@@ -30,8 +30,8 @@ use super::casters::{OPEN_CASTERS, SKIP};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::soft::count::Counting;
 use super::soft::covering::{
-    BACKEND, Covering, LIGHT_FRAME, LIGHT_IMAGE, TEXTURE_CENTRED, TEXTURE_FILTER, TEXTURE_SIZE,
-    light_image,
+    BACKEND, Covering, Coverings, LIGHT_FRAME, LIGHT_IMAGE, TEXTURE_CENTRED, TEXTURE_FILTER,
+    TEXTURE_SIZE, light_image,
 };
 use super::soft::edges::{Casters, Silhouettes};
 use super::soft::horizon::{self, HORIZON};
@@ -125,6 +125,7 @@ impl Technique for SoftShadowVolumes {
         let lights = passes::lights(scene, params)?;
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut warnings = Vec::new();
+        let mut coverings = Coverings::default();
         for &light in lights.iter().rev() {
             let seen = params.get(SPHERE.name) != "equator";
             let shape = &scene.lights[light];
@@ -137,7 +138,7 @@ impl Technique for SoftShadowVolumes {
                 buffers: &buffers,
                 light: &soft,
                 params,
-                covering: Covering::create(self.name(), &soft, light, params, textures)?,
+                covering: coverings.of(self.name(), &soft, light, params, textures)?,
             };
             let label = |what: &str| passes::label(what, light, &lights);
             list.push(volumes.count_pass(label("quads"), &silhouettes));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use gnomon_pipeline::comparison::{CompareError, ReferenceKind};
 use gnomon_pipeline::oracle::cache::OracleCache;
 use gnomon_pipeline::render::RenderSettings;
-use gnomon_pipeline::scene::{self, Scene};
+use gnomon_pipeline::scene::{Scene, SceneSource};
 use gnomon_pipeline::technique::{Params, Technique, find};
 
 use crate::args::{CompareArgs, EntryArg};
@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::output::files;
 use crate::verbs;
 
-const DEFAULT_SIZE: [u32; 2] = [640, 480];
+pub(super) const DEFAULT_SIZE: [u32; 2] = [640, 480];
 
 /// A comparison, ready to run.
 pub(super) struct Job {
@@ -38,10 +38,8 @@ pub(super) struct Entry {
 
 impl Job {
     pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
-        let entries = args.techniques.iter().map(|arg| Entry::new(arg, args));
-        let entries = entries.collect::<Result<Vec<Entry>, CliError>>()?;
-        check_settings(args)?;
-        let scene = scene::open(&args.scene)?;
+        let entries = entries(args, Some(args.light))?;
+        let scene = SceneSource::open(&args.scene)?.at(args.time)?;
         let (given, count) = (args.light, scene.lights.len());
         if given >= count {
             return Err(CompareError::NoSuchLight { given, count }.into());
@@ -70,8 +68,19 @@ impl Job {
     }
 }
 
+/// The techniques to compare, under light number `light` alone or under all.
+pub(super) fn entries(args: &CompareArgs, light: Option<usize>) -> Result<Vec<Entry>, CliError> {
+    let entries = args
+        .techniques
+        .iter()
+        .map(|arg| Entry::new(arg, args, light));
+    let entries = entries.collect::<Result<Vec<Entry>, CliError>>()?;
+    check_settings(args)?;
+    Ok(entries)
+}
+
 impl Entry {
-    fn new(arg: &EntryArg, args: &CompareArgs) -> Result<Self, CliError> {
+    fn new(arg: &EntryArg, args: &CompareArgs, light: Option<usize>) -> Result<Self, CliError> {
         let technique = find(&arg.technique)?;
         let for_all = args
             .settings
@@ -82,10 +91,14 @@ impl Entry {
             .chain(arg.settings.iter().cloned())
             .collect();
         if let Some((_, value)) = given.iter().find(|(key, _)| key == LIGHT) {
+            let valid = match light {
+                Some(_) => "one light is compared at a time: choose it with --light N",
+                None => "all lights of an environment are compared together",
+            };
             return Err(CliError::Flag {
                 flag: "light",
                 value: value.clone(),
-                valid: "one light is compared at a time: choose it with --light N".to_owned(),
+                valid: valid.to_owned(),
             });
         }
         let mut label = technique.name().to_owned();
@@ -93,9 +106,9 @@ impl Entry {
             label += &format!(" {key}={value}");
         }
         let has_lights = technique.params().iter().any(|p| p.name == LIGHT);
-        let light = (LIGHT.to_owned(), args.light.to_string());
-        let all: Vec<_> = has_lights
-            .then_some(light)
+        let light = light.map(|l| (LIGHT.to_owned(), l.to_string()));
+        let all: Vec<_> = light
+            .filter(|_| has_lights)
             .into_iter()
             .chain(given)
             .collect();

@@ -1,6 +1,7 @@
 //! `gnomon compare`: techniques against the truth, in errors, time and bytes.
 
 mod document;
+mod environment;
 mod job;
 mod measure;
 mod picture;
@@ -18,6 +19,9 @@ use measure::{Comparison, Measured};
 
 /// Renders, measures, draws and prints.
 pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
+    if args.environment.env.is_some() {
+        return environment::run(args);
+    }
     let job = Job::new(args)?;
     let progress = Progress::new(job.steps());
     let found = measure::run(&job, &progress)?;

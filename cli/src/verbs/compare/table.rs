@@ -91,7 +91,7 @@ fn psnr(measured: &Measured) -> String {
 
 /// A label in lines of at most [`NAME`] characters, broken at blanks and behind
 /// hyphens and equals signs; longer parts stay whole.
-fn lines(label: &str) -> String {
+pub(super) fn lines(label: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in label.split(' ') {
         let mut fresh = true; // a word begins a line

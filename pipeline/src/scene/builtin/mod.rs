@@ -14,6 +14,7 @@ mod parallel_plates;
 mod peers;
 mod soft_errors;
 mod spheres;
+mod walk;
 
 use super::Scene;
 use crate::error::{UnknownScene, nearest};
@@ -27,15 +28,36 @@ pub struct BuiltinScene {
     pub name: &'static str,
     /// One line for people.
     pub description: &'static str,
-    build: fn() -> Scene,
+    build: Build,
+}
+
+/// How a scene is made.
+#[derive(Clone, Copy, Debug)]
+enum Build {
+    Still(fn() -> Scene),
+    /// At a time in seconds.
+    Moving(fn(f64) -> Scene),
 }
 
 impl BuiltinScene {
-    /// Makes the scene, with [`Scene::name`] set to the registered name.
+    /// Makes the scene at time 0, with [`Scene::name`] set to the registered name.
     pub fn build(&self) -> Scene {
-        let mut scene = (self.build)();
+        self.at(0.0)
+    }
+
+    /// The scene at `time`, in seconds.
+    pub fn at(&self, time: f64) -> Scene {
+        let mut scene = match self.build {
+            Build::Still(build) => build(),
+            Build::Moving(build) => build(time),
+        };
         scene.name = self.name.to_owned();
         scene
+    }
+
+    /// Whether it changes with time.
+    pub fn moves(&self) -> bool {
+        matches!(self.build, Build::Moving(_))
     }
 }
 
@@ -51,6 +73,7 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("single-silhouette", "cube close to a large light: the silhouette of the light's centre misses the umbra", soft_errors::single_silhouette),
     entry("overlap", "two crossing bars: penumbrae that overlap are not to be summed", soft_errors::overlap),
     entry("creature", "biped of 15 overlapping closed parts", creature::scene),
+    moving("walk", "animated: a creature walks round, a ball bounces, a knot and a beam turn (8 s)", walk::scene),
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),
     entry("adversarial-near-plane", "the near plane cuts a volume: z-pass needs depth clamp", adversarial::near_plane),
@@ -72,7 +95,19 @@ const fn entry(
     BuiltinScene {
         name,
         description,
-        build,
+        build: Build::Still(build),
+    }
+}
+
+const fn moving(
+    name: &'static str,
+    description: &'static str,
+    build: fn(f64) -> Scene,
+) -> BuiltinScene {
+    BuiltinScene {
+        name,
+        description,
+        build: Build::Moving(build),
     }
 }
 
@@ -81,8 +116,16 @@ const fn entry(
 /// # Errors
 /// No such scene: the error lists all names and suggests the nearest.
 pub fn build(name: &str) -> Result<Scene, UnknownScene> {
+    Ok(find(name)?.build())
+}
+
+/// The entry called `name`.
+///
+/// # Errors
+/// As [`build`].
+pub fn find(name: &str) -> Result<&'static BuiltinScene, UnknownScene> {
     match SCENES.iter().find(|s| s.name == name) {
-        Some(scene) => Ok(scene.build()),
+        Some(scene) => Ok(scene),
         None => {
             let known: Vec<&'static str> = SCENES.iter().map(|s| s.name).collect();
             Err(UnknownScene {
@@ -126,8 +169,16 @@ mod tests {
     /// have lights and something to see; making them twice gives the same.
     #[test]
     fn every_scene_is_fit_for_shadow_volumes() {
-        for entry in SCENES {
-            let scene = entry.build();
+        let moments = |e: &'static BuiltinScene| {
+            let times: &[f64] = if e.moves() {
+                &[0.0, 0.4, 3.3, 7.9]
+            } else {
+                &[0.0]
+            };
+            times.iter().map(move |t| (e, *t))
+        };
+        for (entry, time) in SCENES.iter().flat_map(moments) {
+            let scene = entry.at(time);
             assert_eq!(scene.name, entry.name);
             assert!(!scene.lights.is_empty() && scene.casters().count() > 0);
             for caster in scene.casters() {
@@ -151,7 +202,7 @@ mod tests {
                 }
             }
             assert!(
-                entry.build() == scene,
+                entry.at(time) == scene,
                 "{} is not deterministic",
                 entry.name
             );

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use glam::{DMat4, DVec3};
 
-use super::SceneFileError;
 use super::check::Source;
+use super::motion::{self, Moved};
 use super::schema::{
     CameraTable, LightShapeTable, LightTable, MaterialTable, ObjectTable, SceneTable,
 };
-use super::shapes;
+use super::{Moment, SceneFileError, environment, shapes};
 use crate::light::{ConvexPolygon, Light, LightShape};
 use crate::mesh::Shading;
 use crate::scene::{Camera, Material, Object, Scene, SceneWarning};
@@ -23,7 +23,12 @@ const MAX_SIDE: u32 = gnomon_raster::MAX_TEXTURE_SIZE;
 /// Crease angle where the file gives none, degrees.
 const CREASE: f64 = 40.0;
 
-pub(super) fn scene(source: &Source<'_>, folder: &Path, table: SceneTable) -> Built<Scene> {
+pub(super) fn scene(
+    source: &Source<'_>,
+    folder: &Path,
+    table: SceneTable,
+    moment: &mut Moment<'_>,
+) -> Built<Scene> {
     let camera = camera(source, &table.camera)?;
     let lights = table.lights.iter().map(|l| light(source, l));
     let mut out = Scene::new(camera, lights.collect::<Built<_>>()?, Vec::new());
@@ -34,15 +39,42 @@ pub(super) fn scene(source: &Source<'_>, folder: &Path, table: SceneTable) -> Bu
     if let Some(background) = &table.background {
         out.background = source.colour("background", background)?;
     }
-    require(source, "lights", table.lights.is_empty())?;
+    let lit = table.environment.is_some() || moment.environment.is_some();
+    require(source, "lights", table.lights.is_empty() && !lit)?;
     require(source, "objects", table.objects.is_empty())?;
     for (index, object_table) in table.objects.iter().enumerate() {
-        let (object, warnings) = object(source, folder, index, object_table)?;
+        let (object, warnings) = object(source, folder, index, object_table, moment.time)?;
         out.objects.push(object);
         out.warnings.extend(warnings);
     }
-    out.name = table.name;
+    out.name = table.name.clone();
+    light_by_environment(source, folder, &table, moment, &mut out)?;
     Ok(out)
+}
+
+/// The environment that the moment asks for, or else the file's own.
+fn light_by_environment(
+    source: &Source<'_>,
+    folder: &Path,
+    table: &SceneTable,
+    moment: &mut Moment<'_>,
+    scene: &mut Scene,
+) -> Built<()> {
+    let span = table.environment.as_ref().map(|e| e.map.span());
+    let at = span.unwrap_or(source.text.len()..source.text.len());
+    let request = match (&table.environment, moment.environment) {
+        (_, Some(asked)) => asked.clone(),
+        (Some(own), None) => {
+            if !table.lights.is_empty() {
+                let message = "lights beside [environment] would not shine; remove one of them";
+                return Err(source.error(at, message.to_owned()));
+            }
+            environment::request(source, folder, own)?
+        }
+        (None, None) => return Ok(()),
+    };
+    let lit = request.light(scene, moment.maps);
+    lit.map_err(|e| source.error(at, e.to_string()))
 }
 
 /// Refuses a missing list, at the end of the text, where it may be added.
@@ -158,8 +190,9 @@ fn object(
     folder: &Path,
     index: usize,
     table: &ObjectTable,
+    time: f64,
 ) -> Built<(Object, Vec<SceneWarning>)> {
-    let read = shapes::shape(source, folder, &table.mesh)?;
+    let read = shapes::shape(source, folder, &table.mesh, time)?;
     let degrees = match &table.crease {
         Some(crease) => {
             let rule = "0..=180 (degrees)";
@@ -171,7 +204,8 @@ fn object(
         Some(name) => name.clone(),
         None => format!("{} {}", table.mesh.kind(), index + 1),
     };
-    let place = world_from_local(source, table)?;
+    let moved = motion::moved(source, table.motion.as_ref(), time)?;
+    let place = world_from_local(source, table, moved)?;
     let mesh = read
         .shape
         .transformed(place)
@@ -202,13 +236,18 @@ fn object_error(
 }
 
 /// Scale, then rotation about x, y, z, then translation.
-fn world_from_local(source: &Source<'_>, table: &ObjectTable) -> Built<DMat4> {
+fn world_from_local(source: &Source<'_>, table: &ObjectTable, moved: Moved) -> Built<DMat4> {
     let mut place = DMat4::IDENTITY;
-    if let Some(translate) = &table.translate {
-        place *= DMat4::from_translation(source.finite("translate", translate)?);
+    let own = |name, value: &Option<_>| match value {
+        Some(value) => source.finite(name, value),
+        None => Ok(DVec3::ZERO),
+    };
+    let offset = own("translate", &table.translate)? + moved.translate;
+    if offset != DVec3::ZERO {
+        place *= DMat4::from_translation(offset);
     }
-    if let Some(rotate) = &table.rotate {
-        let angles = source.finite("rotate", rotate)?;
+    let angles = own("rotate", &table.rotate)? + moved.rotate;
+    if angles != DVec3::ZERO {
         place = place * about(2, angles.z) * about(1, angles.y) * about(0, angles.x);
     }
     if let Some(scale) = &table.scale {

@@ -31,6 +31,33 @@
 //! material = { albedo = [0.7, 0.4, 0.2], specular = [0.3, 0.3, 0.3], shininess = 30.0 }
 //! casts = true
 //! receives = true
+//! [objects.motion]                # optional; added to rotate and translate
+//! velocity = [0.2, 0.0, 0.0]      # per second
+//! spin = [0.0, 90.0, 0.0]         # degrees per second
+//! keys = [                        # linear between them
+//!     { time = 0.0 },
+//!     { time = 1.0, translate = [0.0, 0.5, 0.0], rotate = [0.0, 0.0, 20.0] },
+//!     { time = 2.0 },
+//! ]
+//! repeat = true                   # from the first key again after the last one
+//!
+//! [[objects]]
+//! mesh.creature = { phase = 0.0, walk = 6.0 }   # radians, radians per second
+//! ```
+//!
+//! Instead of lights a scene may have an environment, which lights it alone and
+//! sets ambient light and background; see [`crate::environment`]:
+//!
+//! ```toml
+//! [environment]
+//! map = "sky"                     # or a .hdr or .exr file, or a folder of six
+//! lights = 30                     # optional, as everything below
+//! form = "square"                 # or "rectangle"
+//! threshold = 0.05                # looked for by the number of lights if not given
+//! residual = "excess"             # or "mean"
+//! side = 128                      # texels along a cube face
+//! turn = 0.0                      # degrees about +y
+//! brightness = 1.0
 //! ```
 //!
 //! Unknown keys are errors; every error names file, line and column and says
@@ -38,6 +65,8 @@
 
 mod build;
 mod check;
+mod environment;
+mod motion;
 mod schema;
 mod shapes;
 
@@ -46,6 +75,7 @@ use std::path::Path;
 use thiserror::Error;
 
 use super::Scene;
+use crate::environment::{EnvironmentRequest, FittedMaps};
 
 /// Why a scene file could not be used.
 #[derive(Debug, Error)]
@@ -72,36 +102,86 @@ pub enum SceneFileError {
     },
 }
 
-/// Reads a scene file; mesh paths are relative to it.
+/// When and under which light a scene is wanted.
+#[derive(Debug)]
+pub struct Moment<'a> {
+    /// Seconds.
+    pub time: f64,
+    /// Takes the place of the file's own lights and environment.
+    pub environment: Option<&'a EnvironmentRequest>,
+    /// Maps that were read before; those of this scene are added.
+    pub maps: &'a mut FittedMaps,
+}
+
+/// Reads a scene file at time 0; mesh paths are relative to it.
 ///
 /// # Errors
 /// The file or a mesh cannot be read, is not TOML, or holds a value that makes
 /// no scene.
 pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
-    let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|source| SceneFileError::Unreadable {
-        file: file.clone(),
+    let mut moment = Moment {
+        time: 0.0,
+        environment: None,
+        maps: &mut FittedMaps::default(),
+    };
+    named(path, &read(path)?, &mut moment)
+}
+
+/// The text of a scene file.
+pub(super) fn read(path: &Path) -> Result<String, SceneFileError> {
+    std::fs::read_to_string(path).map_err(|source| SceneFileError::Unreadable {
+        file: path.display().to_string(),
         source,
-    })?;
+    })
+}
+
+/// The scene of `text`, which is that of `path`; named after it where it has no
+/// name of its own.
+pub(super) fn named(
+    path: &Path,
+    text: &str,
+    moment: &mut Moment<'_>,
+) -> Result<Scene, SceneFileError> {
+    let file = path.display().to_string();
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let mut scene = parse(&text, &file, path.parent().unwrap_or(Path::new(".")))?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let mut scene = parse_at(text, &file, folder, moment)?;
     if scene.name.is_empty() {
         scene.name = stem.into_owned();
     }
     Ok(scene)
 }
 
-/// Reads scene text; `file` names it in messages, `folder` holds its meshes.
+/// Reads scene text at time 0; `file` names it in messages, `folder` holds its
+/// meshes.
 ///
 /// # Errors
 /// As [`load`].
 pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Scene, SceneFileError> {
+    let mut moment = Moment {
+        time: 0.0,
+        environment: None,
+        maps: &mut FittedMaps::default(),
+    };
+    parse_at(text, file, folder, &mut moment)
+}
+
+/// The same at any moment.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse_at(
+    text: &str,
+    file: &str,
+    folder: &Path,
+    moment: &mut Moment<'_>,
+) -> Result<Scene, SceneFileError> {
     let source = check::Source { text, file };
     let table: schema::SceneTable = toml::from_str(text).map_err(|e| {
         let span = e.span().unwrap_or(0..0);
         source.error(span, e.message().to_owned())
     })?;
-    build::scene(&source, folder, table)
+    build::scene(&source, folder, table, moment)
 }
 
 #[cfg(test)]
@@ -149,7 +229,7 @@ shape.point = { position = [1, 4, 1] }
             ("example", Some([640, 480]))
         );
         let casts: Vec<bool> = scene.objects.iter().map(|o| o.casts).collect();
-        assert_eq!(casts, [false, true]);
+        assert_eq!(casts, [false, true, true]);
         assert!(matches!(
             scene.lights[0].shape,
             LightShape::Rectangle { .. }
@@ -171,6 +251,85 @@ shape.point = { position = [1, 4, 1] }
         let two = message(&with("[[0, 3, 0], [1, 3, 0]]"));
         assert!(two.starts_with("s.toml:5:"), "{two}");
         assert!(two.contains("at least 3"), "{two}");
+    }
+
+    fn at(text: &str, time: f64) -> Result<Scene, SceneFileError> {
+        let mut moment = Moment {
+            time,
+            environment: None,
+            maps: &mut FittedMaps::default(),
+        };
+        parse_at(text, "s.toml", Path::new("."), &mut moment)
+    }
+
+    #[test]
+    fn objects_move_by_rates_and_keys() {
+        let text = with_object(
+            "mesh.box = { size = [2, 2, 2] }\ntranslate = [10, 0, 0]\n[objects.motion]\n\
+             velocity = [1, 0, 0]\nspin = [0, 45, 0]\nrepeat = true\n\
+             keys = [{ time = 1 }, { time = 3, translate = [0, 4, 0] }]",
+        );
+        let bounds = |time| at(&text, time).unwrap().objects[0].mesh.bounds().unwrap();
+        let middle = |time| (bounds(time).0 + bounds(time).1) * 0.5;
+        assert_eq!(middle(1.0), DVec3::new(11.0, 0.0, 0.0));
+        assert!((middle(2.0) - DVec3::new(12.0, 2.0, 0.0)).length() < 1e-6);
+        assert!(
+            (middle(3.5) - DVec3::new(13.5, 1.0, 0.0)).length() < 1e-6,
+            "from the first key"
+        );
+        // Half a right angle makes the box wider by the square root of 2.
+        let wide = bounds(1.0).1.x - bounds(1.0).0.x;
+        assert!(
+            (wide - 2.0 * std::f64::consts::SQRT_2).abs() < 1e-6,
+            "{wide}"
+        );
+        let held = text.replace("repeat = true", "");
+        assert_eq!(
+            at(&held, 9.0).unwrap().objects[0]
+                .mesh
+                .bounds()
+                .unwrap()
+                .1
+                .y,
+            5.0
+        );
+        let wrong = text.replace("time = 3", "time = 1");
+        let message = at(&wrong, 0.0).unwrap_err().to_string();
+        assert!(message.contains("time is 1; valid is above 1"), "{message}");
+    }
+
+    #[test]
+    fn a_creature_walks() {
+        let text = with_object("mesh.creature = { phase = 0, walk = 2 }");
+        let later = with_object("mesh.creature = { phase = 3 }");
+        let mesh = |text: &str, time| at(text, time).unwrap().objects[0].mesh.clone();
+        assert!(mesh(&text, 1.5) == mesh(&later, 0.0));
+        assert!(mesh(&text, 1.5) != mesh(&text, 1.0));
+    }
+
+    #[test]
+    fn an_environment_takes_the_place_of_lights() {
+        let camera = HEAD.split("[[lights]]").next().unwrap();
+        let object = "[[objects]]\nmesh.box = { size = [1, 1, 1] }\n";
+        let with = |lines: &str| format!("{camera}[environment]\n{lines}\n{object}");
+        let scene = read(&with("map = \"sky\"\nside = 32\nlights = 20\nturn = 30")).unwrap();
+        assert!(
+            (15..=20).contains(&scene.lights.len()),
+            "{}",
+            scene.lights.len()
+        );
+        assert!(scene.environment.is_some());
+        let missing = message(&with("map = \"nowhere.hdr\""));
+        assert!(
+            missing.starts_with("s.toml:5:7: ") && missing.contains("nowhere.hdr"),
+            "{missing}"
+        );
+        let form = message(&with("map = \"sky\"\nform = \"round\""));
+        assert!(form.contains("rectangle"), "{form}");
+        let none = message(&with("map = \"sky\"\nlights = 0"));
+        assert!(none.contains("1 to 1024"), "{none}");
+        let both = message(&format!("{HEAD}[environment]\nmap = \"sky\"\n{object}"));
+        assert!(both.contains("beside [environment]"), "{both}");
     }
 
     #[test]

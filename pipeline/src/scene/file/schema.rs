@@ -19,6 +19,7 @@ pub(super) struct SceneTable {
     pub(super) ambient: Option<Triple>,
     pub(super) background: Option<Triple>,
     pub(super) camera: CameraTable,
+    pub(super) environment: Option<EnvironmentTable>,
     #[serde(default)]
     pub(super) lights: Vec<LightTable>,
     #[serde(default)]
@@ -87,6 +88,53 @@ pub(super) struct ObjectTable {
     pub(super) material: Option<MaterialTable>,
     pub(super) casts: Option<bool>,
     pub(super) receives: Option<bool>,
+    pub(super) motion: Option<MotionTable>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MotionTable {
+    pub(super) velocity: Option<Triple>,
+    pub(super) spin: Option<Triple>,
+    #[serde(default)]
+    pub(super) keys: Vec<KeyTable>,
+    #[serde(default)]
+    pub(super) repeat: bool,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeyTable {
+    pub(super) time: Number,
+    pub(super) translate: Option<Triple>,
+    pub(super) rotate: Option<Triple>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EnvironmentTable {
+    pub(super) map: Spanned<String>,
+    pub(super) lights: Option<Count>,
+    pub(super) form: Option<FormTable>,
+    pub(super) threshold: Option<Number>,
+    pub(super) residual: Option<ResidualTable>,
+    pub(super) side: Option<Count>,
+    pub(super) turn: Option<Number>,
+    pub(super) brightness: Option<Number>,
+}
+
+#[derive(Clone, Copy, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum FormTable {
+    Square,
+    Rectangle,
+}
+
+#[derive(Clone, Copy, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum ResidualTable {
+    Excess,
+    Mean,
 }
 
 #[derive(serde::Deserialize)]
@@ -137,6 +185,7 @@ pub(super) enum MeshTable {
     },
     Creature {
         phase: Number,
+        walk: Option<Number>,
     },
 }
 

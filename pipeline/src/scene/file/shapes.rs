@@ -21,11 +21,12 @@ pub(super) struct Read {
     pub(super) warnings: Vec<SceneWarning>,
 }
 
-/// The shape that a table asks for.
+/// The shape that a table asks for at `time`, in seconds.
 pub(super) fn shape(
     source: &Source<'_>,
     folder: &Path,
     table: &MeshTable,
+    time: f64,
 ) -> Result<Read, SceneFileError> {
     match table {
         MeshTable::Obj(path) => {
@@ -38,13 +39,13 @@ pub(super) fn shape(
             })
         }
         primitive => Ok(Read {
-            shape: self::primitive(source, primitive)?,
+            shape: self::primitive(source, primitive, time)?,
             ..Read::default()
         }),
     }
 }
 
-fn primitive(source: &Source<'_>, table: &MeshTable) -> Result<Shape, SceneFileError> {
+fn primitive(source: &Source<'_>, table: &MeshTable, time: f64) -> Result<Shape, SceneFileError> {
     Ok(match table {
         MeshTable::Obj(_) => Shape::default(),
         MeshTable::Plane { half } => shape::plane(source.positive("half", half)?, 0.0),
@@ -113,8 +114,12 @@ fn primitive(source: &Source<'_>, table: &MeshTable) -> Result<Shape, SceneFileE
             octaves: 7,
             amplitude: source.number("amplitude", amplitude)?,
         }),
-        MeshTable::Creature { phase } => {
-            Shape::merged(shape::creature(source.number("phase", phase)?))
+        MeshTable::Creature { phase, walk } => {
+            let mut angle = source.number("phase", phase)?;
+            if let Some(walk) = walk {
+                angle += source.number("walk", walk)? * time;
+            }
+            Shape::merged(shape::creature(angle))
         }
     })
 }

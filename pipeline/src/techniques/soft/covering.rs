@@ -61,8 +61,34 @@ pub(crate) enum Covering {
     Table(CoverageTable, TextureId),
 }
 
+/// Coverings of the lights of a frame. Lights of one shape share a texture: it
+/// depends on nothing else that differs between them.
+#[derive(Default)]
+pub(crate) struct Coverings(Vec<(Image, Covering)>);
+
+impl Coverings {
+    /// That of light number `number`.
+    pub(crate) fn of(
+        &mut self,
+        technique: &'static str,
+        light: &SoftLight,
+        number: usize,
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Covering, TechniqueError> {
+        let shape = light.sides.first().map(|s| s.projector.image());
+        let known = self.0.iter().find(|(of, _)| Some(*of) == shape);
+        if let Some((_, covering)) = known {
+            return Ok(*covering);
+        }
+        let covering = Covering::create(technique, light, number, params, textures)?;
+        self.0.extend(shape.map(|shape| (shape, covering)));
+        Ok(covering)
+    }
+}
+
 impl Covering {
-    pub(crate) fn create(
+    fn create(
         technique: &'static str,
         light: &SoftLight,
         number: usize,

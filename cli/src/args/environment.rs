@@ -1,0 +1,84 @@
+//! Flags of environment lighting.
+
+use clap::{Args, ValueEnum};
+use gnomon_pipeline::environment::{
+    EnvironmentRequest, FitSettings, LightForm, MapSettings, ResidualRule,
+};
+
+/// A map that lights the scene alone, and how lights are fitted to it.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Environment lighting")]
+pub(crate) struct EnvArgs {
+    /// Light the scene by a map alone: sky (built in), a .hdr or .exr file
+    /// (latitude-longitude, cross or strip), or a folder of px, nx, py, ny, pz, nz
+    #[arg(long, value_name = "MAP")]
+    pub(crate) env: Option<String>,
+    /// Shape of the fitted area lights
+    #[arg(long, value_name = "FORM", value_enum, requires = "env")]
+    env_form: Option<FormArg>,
+    /// A light grows where it gains more than this share of its energy [default:
+    /// the largest with which the lights cover 95% of the map's light]
+    #[arg(long, value_name = "T", requires = "env")]
+    env_threshold: Option<f64>,
+    /// What a light leaves in its texels, which becomes ambient light: excess (the
+    /// face's mean where there was more) or mean (up to the face's mean)
+    #[arg(long, value_name = "RULE", value_enum, requires = "env")]
+    env_residual: Option<ResidualArg>,
+    /// Most texels along a face of the cube that the map is spread over [default: 128]
+    #[arg(long, value_name = "N", requires = "env")]
+    env_side: Option<usize>,
+    /// Turn the map about the vertical, degrees
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        requires = "env",
+        allow_negative_numbers = true
+    )]
+    env_turn: Option<f64>,
+    /// Factor of the map's radiance
+    #[arg(long, value_name = "X", requires = "env")]
+    env_brightness: Option<f64>,
+}
+
+/// Shape of fitted lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FormArg {
+    Square,
+    Rectangle,
+}
+
+/// What lights leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ResidualArg {
+    Excess,
+    Mean,
+}
+
+impl EnvArgs {
+    /// What is asked for with that many lights, if anything is.
+    pub(crate) fn request(&self, lights: Option<usize>) -> Option<EnvironmentRequest> {
+        let (map, fit) = (MapSettings::default(), FitSettings::default());
+        Some(EnvironmentRequest {
+            map: self.env.clone()?,
+            settings: MapSettings {
+                side: self.env_side.unwrap_or(map.side),
+                turn: self.env_turn.unwrap_or(map.turn),
+                brightness: self.env_brightness.unwrap_or(map.brightness),
+            },
+            fit: FitSettings {
+                lights: lights.unwrap_or(fit.lights),
+                threshold: self.env_threshold,
+                form: match self.env_form {
+                    Some(FormArg::Square) => LightForm::Square,
+                    Some(FormArg::Rectangle) => LightForm::Rectangle,
+                    None => fit.form,
+                },
+                residual: match self.env_residual {
+                    Some(ResidualArg::Excess) => ResidualRule::Excess,
+                    Some(ResidualArg::Mean) => ResidualRule::Mean,
+                    None => fit.residual,
+                },
+            },
+        })
+    }
+}

@@ -1,0 +1,146 @@
+//! `gnomon render --frames`: an animation, frame after frame.
+//!
+//! Frame k shows the time `T + k / F`. Everything of a frame is made for it alone,
+//! but for the map of an environment, which is read once: so it has the bits of
+//! the single picture of that time.
+
+use std::path::{Path, PathBuf};
+
+use gnomon_pipeline::render::{Rendered, render};
+use gnomon_pipeline::technique::find;
+use serde::Serialize;
+
+use super::{Job, default_out, source, write};
+use crate::args::RenderArgs;
+use crate::error::CliError;
+use crate::output;
+use crate::output::files::check_folder;
+use crate::output::json::{FileDocument, RenderDocument, worker_threads};
+use crate::output::numbers;
+use crate::output::progress::Progress;
+use crate::output::tables::{self, Table};
+
+/// Frames per second where none are given.
+const RATE: f64 = 24.0;
+
+#[derive(Serialize)]
+struct FramesDocument {
+    scene: String,
+    technique: &'static str,
+    fps: f64,
+    frames: Vec<FrameDocument>,
+}
+
+#[derive(Serialize)]
+struct FrameDocument {
+    frame: u32,
+    /// Seconds.
+    time: f64,
+    render: RenderDocument,
+}
+
+/// Renders `count` frames.
+pub(super) fn run(args: &RenderArgs, count: u32) -> Result<(), CliError> {
+    check(args)?;
+    let technique = find(&args.technique)?;
+    let params = crate::verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
+    let mut source = source(args)?;
+    let rate = args.fps.unwrap_or(RATE);
+    let progress = Progress::new(u64::from(count) * (2 + args.overlay.len() as u64));
+    let mut table = Table::new("Frames", &["frame", "time", "took", "bytes", "color"]);
+    let (mut frames, mut last) = (Vec::new(), None);
+    for frame in 0..count {
+        progress.doing(format!("frame {frame}"));
+        let time = args.time + f64::from(frame) / rate;
+        let scene = source.at(time)?;
+        let folder = folder(args, &scene.name);
+        let out = folder.join(format!("frame-{frame:04}.png"));
+        let job = Job::of(args, technique, params.clone(), scene, Some(out))?;
+        let done = render(&job.scene, technique, &params, &job.settings)?;
+        progress.step();
+        let files = write(&job, args, &done, &progress)?;
+        table.rows.push(row(frame, time, &done));
+        if args.json {
+            frames.push(FrameDocument {
+                frame,
+                time,
+                render: job.document(&done, files.clone()),
+            });
+        }
+        last = Some((job, done, files));
+    }
+    drop(progress);
+    let Some((job, done, files)) = last else {
+        return Ok(()); // at least one frame is asked for
+    };
+    if args.json {
+        output::print_json(&FramesDocument {
+            scene: job.scene.name.clone(),
+            technique: technique.name(),
+            fps: rate,
+            frames,
+        })?;
+    }
+    output::print_summary(&summary(&job, &done, &files, &table), args.json)
+}
+
+/// A frame of an animation has no place for one array, nor a folder for one name.
+fn check(args: &RenderArgs) -> Result<(), CliError> {
+    if let Some(visibility) = &args.visibility {
+        return Err(CliError::Flag {
+            flag: "--visibility",
+            value: visibility.display().to_string(),
+            valid: "it is of one picture; give --time instead of --frames".to_owned(),
+        });
+    }
+    match &args.out {
+        Some(out) => check_folder("--out", out),
+        None => Ok(()),
+    }
+}
+
+fn folder(args: &RenderArgs, scene: &str) -> PathBuf {
+    let by_default = || default_out(scene, &args.technique).with_extension("");
+    args.out.clone().unwrap_or_else(by_default)
+}
+
+fn row(frame: u32, time: f64, done: &Rendered) -> Vec<String> {
+    let bytes = numbers::bytes(tables::frame_bytes(&done.report));
+    let hash = done.color_hash()[..16].to_owned();
+    vec![
+        frame.to_string(),
+        format!("{time:.3} s"),
+        numbers::milliseconds(done.frame_ms),
+        bytes,
+        hash,
+    ]
+}
+
+/// The frames, and the warnings of the last one.
+fn summary(job: &Job, done: &Rendered, files: &[FileDocument], table: &Table) -> String {
+    let settings = &job.settings;
+    let mut text = format!(
+        "{}, {}, {}x{}, {} lights: {} threads, {}, skipping {}\n\n{}",
+        job.scene.name,
+        job.technique.name(),
+        done.size[0],
+        done.size[1],
+        job.scene.lights.len(),
+        worker_threads(settings.gpu.threads),
+        settings.gpu.simd,
+        if settings.gpu.skip { "on" } else { "off" },
+        table.to_text(),
+    );
+    for warning in &done.warnings {
+        text += &format!(
+            "warning: last frame: {}: {}\n",
+            warning.code, warning.message
+        );
+    }
+    let folder = files.first().and_then(|f| Path::new(&f.path).parent());
+    if let Some(folder) = folder {
+        let count = table.rows.len() * files.len();
+        text += &format!("wrote {count} files to {}\n", folder.display());
+    }
+    text
+}

@@ -1,0 +1,318 @@
+//! Two techniques for the lights of one scene: the brightest by one, the others
+//! by the other.
+//!
+//! A scene under an environment has tens of lights, few of which make shadows
+//! that are seen as such. Each technique draws its own lights, ambient light with
+//! the first ones only; then the second picture is added to the first. So any two
+//! techniques of the registry go together, and neither knows of it. The price is
+//! a second colour and depth buffer and a second pass for depth, all of it
+//! counted.
+
+use gnomon_raster::state::{
+    BlendState, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState,
+};
+use gnomon_raster::{LoadOp, RenderPass, RenderPipeline, TextureId};
+use gnomon_shaders::soft_volumes::Resolve;
+use gnomon_shaders::transform::FullScreen;
+
+use super::casters::SKIP;
+use super::passes;
+use super::visibility::{attachment, binding, full_screen};
+use crate::scene::Scene;
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, find};
+
+/// The registry's entry.
+pub(crate) struct MixedLights;
+
+const BRIGHTEST: ParamInfo = ParamInfo {
+    name: "brightest",
+    default: "8",
+    valid: "N",
+    summary: "how many lights the first technique draws; visibility is that of the brightest",
+};
+
+const FIRST: ParamInfo = ParamInfo {
+    name: "first",
+    default: "soft-shadow-volumes",
+    valid: "TECHNIQUE",
+    summary: "technique of the brightest lights, with settings behind colons: NAME:KEY=VALUE:...",
+};
+
+const REST: ParamInfo = ParamInfo {
+    name: "rest",
+    default: "shadow-volumes",
+    valid: "TECHNIQUE",
+    summary: "technique of the other lights, likewise",
+};
+
+/// Parameters that both techniques get as they are, where they have them.
+const SHARED: [&str; 4] = ["skip", "shading", "color-format", "depth-format"];
+
+/// Luminance of linear Rec. 709 RGB.
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+impl Technique for MixedLights {
+    fn name(&self) -> &'static str {
+        "mixed-lights"
+    }
+
+    fn summary(&self) -> &'static str {
+        "the brightest lights by one technique, the others by another one"
+    }
+
+    fn params(&self) -> &'static [ParamInfo] {
+        const PARAMS: &[ParamInfo] = &[
+            BRIGHTEST,
+            FIRST,
+            REST,
+            passes::LIGHT,
+            SKIP,
+            passes::SHADING,
+            passes::COLOR_FORMAT,
+            passes::DEPTH_FORMAT,
+        ];
+        PARAMS
+    }
+
+    fn frame(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Frame, TechniqueError> {
+        let inner = [FIRST, REST].map(|p| Inner::new(self.name(), p, params));
+        let [first, rest] = inner;
+        let (first, rest) = (first?, rest?);
+        let lights = by_brightness(scene, passes::lights(scene, params)?);
+        let brightest = params.get(BRIGHTEST.name).parse().unwrap_or(usize::MAX);
+        let (bright, others) = lights.split_at(brightest.min(lights.len()));
+        let dark = Scene {
+            ambient: [0.0; 3],
+            background: [0.0; 3],
+            ..scene.clone()
+        };
+        match (bright, others) {
+            (bright, []) => first.frame(scene, bright, size, textures),
+            ([], others) => rest.frame(scene, others, size, textures),
+            (bright, others) => {
+                let frame = first.frame(scene, bright, size, textures)?;
+                let second = rest.frame(&dark, others, size, textures)?;
+                Ok(joined(frame, second))
+            }
+        }
+    }
+}
+
+/// A technique and its settings.
+struct Inner {
+    technique: &'static dyn Technique,
+    params: Params,
+}
+
+impl Inner {
+    fn new(outer: &'static str, which: ParamInfo, params: &Params) -> Result<Self, TechniqueError> {
+        let given = params.get(which.name);
+        let mut parts = given.split(':');
+        let technique = find(parts.next().unwrap_or_default())?;
+        if technique.name() == outer {
+            return Err(TechniqueError::BadValue {
+                technique: outer,
+                key: which.name,
+                value: given.to_owned(),
+                valid: "any technique but mixed-lights",
+            });
+        }
+        let has = |key: &str| technique.params().iter().any(|p| p.name == key);
+        let shared = SHARED.iter().filter(|key| has(key));
+        let shared = shared.map(|key| format!("{key}={}", params.get(key)));
+        let all: Vec<String> = shared.chain(parts.map(str::to_owned)).collect();
+        Ok(Self {
+            technique,
+            params: Params::parse(technique, all)?,
+        })
+    }
+
+    /// The frame of some lights of `scene`, which keep their numbers in reports.
+    fn frame(
+        &self,
+        scene: &Scene,
+        lights: &[usize],
+        size: [u32; 2],
+        textures: &mut dyn TextureSource,
+    ) -> Result<Frame, TechniqueError> {
+        let part = Scene {
+            lights: lights.iter().map(|&l| scene.lights[l].clone()).collect(),
+            ..scene.clone()
+        };
+        let frame = self.technique.frame(&part, size, &self.params, textures);
+        let mut frame = frame.map_err(|e| numbered(e, lights))?;
+        for caster in &mut frame.casters {
+            caster.light = lights[caster.light];
+        }
+        Ok(frame)
+    }
+}
+
+/// The error with the light's number in the whole scene.
+fn numbered(error: TechniqueError, lights: &[usize]) -> TechniqueError {
+    match error {
+        TechniqueError::UnsuitableLight {
+            technique,
+            light,
+            why,
+            valid,
+        } => TechniqueError::UnsuitableLight {
+            technique,
+            light: lights.get(light).copied().unwrap_or(light),
+            why,
+            valid,
+        },
+        other => other,
+    }
+}
+
+/// `lights`, brightest first; equals keep their order.
+fn by_brightness(scene: &Scene, mut lights: Vec<usize>) -> Vec<usize> {
+    let luminance = |l: usize| -> f64 {
+        let colour = scene.lights[l].colour;
+        (0..3).map(|c| LUMINANCE[c] * f64::from(colour[c])).sum()
+    };
+    lights.sort_by(|&a, &b| luminance(b).total_cmp(&luminance(a)));
+    lights
+}
+
+/// Both frames and a pass that adds the second one's light to the first's.
+fn joined(mut frame: Frame, second: Frame) -> Frame {
+    for mut pass in second.list.passes {
+        pass.label += " (rest)";
+        frame.list.passes.push(pass);
+    }
+    let add = addition(frame.outputs.color, second.outputs.color);
+    frame.list.passes.push(add);
+    frame.warnings.extend(second.warnings);
+    frame.casters.extend(second.casters);
+    frame
+}
+
+/// Adds red, green and blue of `light` to `color`.
+fn addition(color: TextureId, light: TextureId) -> RenderPass {
+    let pipeline = RenderPipeline {
+        label: "add the rest".into(),
+        vertex: FullScreen.stage(),
+        fragment: Some(Resolve::Copy.stage()),
+        primitive: PrimitiveState::default(),
+        depth_stencil: DepthStencilState::default(),
+        color_targets: vec![ColorTargetState {
+            blend: Some(BlendState::ADDITIVE),
+            write_mask: ColorWrites(0b111), // alpha stays
+        }],
+    };
+    RenderPass {
+        label: "add the rest".into(),
+        color: vec![attachment(color, LoadOp::Load)],
+        depth_stencil: None,
+        draws: vec![full_screen(pipeline, vec![binding(light)])],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Light;
+    use crate::render::{RenderSettings, Rendered, render};
+    use crate::scene::builtin;
+    use glam::DVec3;
+
+    /// Three lights, the second one the brightest, the first one the faintest.
+    fn scene() -> Scene {
+        let mut scene = builtin::build("creature").unwrap();
+        let light = |x: f64, z: f64, bright: f32| Light {
+            colour: [bright; 3],
+            ..Light::horizontal_square(DVec3::new(x, 4.0, z), 0.7)
+        };
+        scene.lights = vec![
+            light(2.0, 2.0, 0.125),
+            light(-2.0, 1.0, 0.5),
+            light(0.5, -2.0, 0.25),
+        ];
+        scene
+    }
+
+    fn drawn(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
+        let technique = find(technique).unwrap();
+        let params = Params::parse(technique, set).unwrap();
+        let settings = RenderSettings {
+            size: [72, 54],
+            ..RenderSettings::default()
+        };
+        render(scene, technique, &params, &settings).unwrap()
+    }
+
+    const MIXED: &str = "mixed-lights";
+
+    #[test]
+    fn all_lights_by_one_technique_are_that_technique() {
+        let mut scene = scene();
+        scene.lights.swap(0, 1); // brightest first, as the mixture orders them
+        scene.lights.swap(1, 2);
+        let soft = drawn(&scene, "soft-shadow-volumes", &[]);
+        let hard = drawn(&scene, "shadow-volumes", &["method=zfail"]);
+        let all = drawn(&scene, MIXED, &["brightest=3"]);
+        let none = drawn(
+            &scene,
+            MIXED,
+            &["brightest=0", "rest=shadow-volumes:method=zfail"],
+        );
+        assert!(all.srgb == soft.srgb && none.srgb == hard.srgb);
+        assert!(all.srgb != none.srgb);
+        assert_eq!(all.report.passes.len(), soft.report.passes.len());
+    }
+
+    /// The mixture is the sum of its parts, up to the rounding of 16-bit floats.
+    #[test]
+    fn parts_add_up() {
+        let scene = scene();
+        let set = [
+            "brightest=1",
+            "first=soft-shadow-volumes:wedge=paper3",
+            "rest=shadow-volumes",
+        ];
+        let mixed = drawn(&scene, MIXED, &set);
+        let part = |technique, lights: &[usize], ambient: [f32; 3]| {
+            let mut part = scene.clone();
+            part.lights = lights.iter().map(|&l| scene.lights[l].clone()).collect();
+            part.ambient = ambient;
+            drawn(&part, technique, &[])
+        };
+        let soft = part("soft-shadow-volumes", &[1], scene.ambient);
+        let hard = part("shadow-volumes", &[2, 0], [0.0; 3]);
+        let bits = |v: &[f32]| -> Vec<u32> { v.iter().map(|v| v.to_bits()).collect() };
+        assert_eq!(bits(&mixed.visibility), bits(&soft.visibility));
+        let mut seen = 0;
+        for i in (0..72 * 54).filter(|i| mixed.depth[*i] < 1.0) {
+            for c in 0..3 {
+                let sum = soft.color[i][c] + hard.color[i][c];
+                let off = (mixed.color[i][c] - sum).abs();
+                assert!(off <= 2e-3 * sum.max(0.1), "{i}: {sum}");
+                seen += usize::from(hard.color[i][c] > 0.01);
+            }
+        }
+        assert!(seen > 1000);
+    }
+
+    #[test]
+    fn techniques_are_checked() {
+        let technique = find(MIXED).unwrap();
+        let scene = scene();
+        let refused = |set: &str| {
+            let params = Params::parse(technique, [set]).unwrap();
+            let done = render(&scene, technique, &params, &RenderSettings::default());
+            done.err().unwrap().to_string()
+        };
+        assert!(refused("first=soft-shadow-volume").contains("did you mean"));
+        assert!(refused("rest=mixed-lights").contains("any technique but"));
+        assert!(refused("rest=shadow-volumes:method=zz").contains("auto|zpass|zfail"));
+        assert!(refused("light=7").contains("light 7"));
+    }
+}

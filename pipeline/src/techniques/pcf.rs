@@ -3,7 +3,7 @@
 //! texels of hard shadows. It is no soft shadow: the kernel knows nothing of light
 //! and blockers, which the parallel plates show.
 
-use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps, Shadow, ShadowTo};
+use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps};
 
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
@@ -82,26 +82,9 @@ impl Technique for Pcf {
         mapped.frame(
             textures,
             |light| Sources::centre(self.name(), scene, light),
-            |look_up, bias| {
-                let (mapping, to) = (look_up.mapping, ShadowTo::Visibility);
-                if cubic {
-                    let filter = CubicTaps;
-                    return Shadow {
-                        mapping,
-                        bias,
-                        filter,
-                        to,
-                    }
-                    .stage();
-                }
-                let filter = BoxTaps(taps);
-                Shadow {
-                    mapping,
-                    bias,
-                    filter,
-                    to,
-                }
-                .stage()
+            |look_up| match cubic {
+                true => look_up.whole(CubicTaps).stage(),
+                false => look_up.whole(BoxTaps(taps)).stage(),
             },
         )
     }

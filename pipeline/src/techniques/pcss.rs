@@ -16,11 +16,10 @@
 
 use std::sync::Arc;
 
-use gnomon_shaders::shadow_maps::{SampledKernel, Shadow, ShadowTo, WholeKernel};
+use gnomon_shaders::shadow_maps::{SampledKernel, WholeKernel};
 
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
-use crate::light_samples::Pattern;
 use crate::scene::Scene;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
 
@@ -61,8 +60,6 @@ const SEED: ParamInfo = ParamInfo {
     valid: "N",
     summary: "of the jitter of stratified points",
 };
-
-const MOST: u32 = 1024;
 
 /// Kernels are wider than any slope bias could make up for: a compromise.
 const MARGIN: Margin = Margin {
@@ -121,31 +118,17 @@ impl Technique for Pcss {
         mapped.frame(
             textures,
             |light| Sources::centre(self.name(), scene, light),
-            |look_up, bias| {
-                let (mapping, to) = (look_up.mapping, ShadowTo::Visibility);
+            |look_up| {
                 let light_half = look_up.light_half();
                 if all {
-                    let filter = WholeKernel { light_half };
-                    return Shadow {
-                        mapping,
-                        bias,
-                        filter,
-                        to,
-                    }
-                    .stage();
+                    return look_up.whole(WholeKernel { light_half }).stage();
                 }
-                let filter = SampledKernel {
+                let kernel = SampledKernel {
                     light_half,
                     search: search.clone(),
                     filter: filter.clone(),
                 };
-                Shadow {
-                    mapping,
-                    bias,
-                    filter,
-                    to,
-                }
-                .stage()
+                look_up.whole(kernel).stage()
             },
         )
     }
@@ -159,20 +142,8 @@ impl Pcss {
         info: ParamInfo,
         stage: u64,
     ) -> Result<Arc<[[f32; 2]]>, TechniqueError> {
-        let bad = |key: &'static str, valid| TechniqueError::BadValue {
-            technique: self.name(),
-            key,
-            value: params.get(key).to_owned(),
-            valid,
-        };
-        let count: u32 = params.get(info.name).parse().unwrap_or(0);
-        let side = count.isqrt();
-        if side == 0 || side * side != count || count > MOST {
-            let squares = "square numbers from 1 to 1024: 1, 4, 9, 16, 25, ...";
-            return Err(bad(info.name, squares));
-        }
-        let pattern = params.get(PATTERN.name).parse::<Pattern>();
-        let pattern = pattern.map_err(|_| bad(PATTERN.name, PATTERN.valid))?;
+        let side = mapped::square_side(self.name(), params, info)?;
+        let pattern = mapped::pattern(self.name(), params, PATTERN)?;
         let seed: u64 = params.get(SEED.name).parse().unwrap_or(0);
         let cells = (0..side).flat_map(|j| (0..side).map(move |i| [i, j]));
         let point = |cell| {

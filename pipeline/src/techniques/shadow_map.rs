@@ -1,10 +1,8 @@
 //! Shadow mapping: one look-up in a light view for each receiver (IMPLEMENTING
 //! §1.11). Hard shadows of the light's centre, with the resolution of the view.
 
-use gnomon_raster::state::ColorTargetState;
-use gnomon_shaders::shadow_maps::{BoxTaps, Shadow, ShadowTo};
+use gnomon_shaders::shadow_maps::BoxTaps;
 
-use super::light_view::ViewedLight;
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::scene::Scene;
@@ -56,30 +54,7 @@ impl Technique for ShadowMap {
         mapped.frame(
             textures,
             |light| Sources::centre(self.name(), scene, light),
-            |look_up, bias| {
-                Shadow {
-                    mapping: look_up.mapping,
-                    bias,
-                    filter: BoxTaps(1),
-                    to: ShadowTo::Visibility,
-                }
-                .stage()
-            },
+            |look_up| look_up.whole(BoxTaps(1)).stage(),
         )
-    }
-}
-
-impl Sources {
-    /// The light's centre for all of it.
-    pub(super) fn centre(
-        technique: &'static str,
-        scene: &Scene,
-        light: usize,
-    ) -> Result<Self, TechniqueError> {
-        let viewed = ViewedLight::new(technique, &scene.lights[light], light)?;
-        Ok(Self {
-            lights: vec![viewed],
-            blend: ColorTargetState::OPAQUE,
-        })
     }
 }

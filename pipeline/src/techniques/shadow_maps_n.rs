@@ -7,13 +7,13 @@
 //! power of four sums are exact.
 
 use gnomon_raster::state::ColorTargetState;
-use gnomon_shaders::shadow_maps::{BoxTaps, Shadow, ShadowTo};
+use gnomon_shaders::shadow_maps::BoxTaps;
 
 use super::light_view::{LightExtent, ViewedLight};
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::light::HardLight;
-use crate::light_samples::{Pattern, light_points};
+use crate::light_samples::light_points;
 use crate::scene::Scene;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
 
@@ -40,8 +40,6 @@ const SEED: ParamInfo = ParamInfo {
     valid: "N",
     summary: "of the jitter of stratified points, and of the depth of points in spheres",
 };
-
-const MOST: u32 = 1024;
 
 impl Technique for ShadowMapsN {
     fn name(&self) -> &'static str {
@@ -79,7 +77,7 @@ impl Technique for ShadowMapsN {
         params: &Params,
         textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        let side = self.side(params)?;
+        let side = mapped::square_side(self.name(), params, MAPS)?;
         let mapped = Mapped {
             name: self.name(),
             scene,
@@ -90,39 +88,12 @@ impl Technique for ShadowMapsN {
         mapped.frame(
             textures,
             |light| self.points(scene, light, side, params),
-            |look_up, bias| {
-                Shadow {
-                    mapping: look_up.mapping,
-                    bias,
-                    filter: BoxTaps(1),
-                    to: ShadowTo::Share(look_up.share),
-                }
-                .stage()
-            },
+            |look_up| look_up.share(BoxTaps(1)).stage(),
         )
     }
 }
 
 impl ShadowMapsN {
-    fn bad(&self, params: &Params, info: ParamInfo, valid: &'static str) -> TechniqueError {
-        TechniqueError::BadValue {
-            technique: self.name(),
-            key: info.name,
-            value: params.get(info.name).to_owned(),
-            valid,
-        }
-    }
-
-    fn side(&self, params: &Params) -> Result<u32, TechniqueError> {
-        let count: u32 = params.get(MAPS.name).parse().unwrap_or(0);
-        let side = count.isqrt();
-        if side == 0 || side * side != count || count > MOST {
-            let squares = "square numbers from 1 to 1024: 1, 4, 9, 16, 64, 256, ...";
-            return Err(self.bad(params, MAPS, squares));
-        }
-        Ok(side)
-    }
-
     /// The light as points with its axes.
     fn points(
         &self,
@@ -132,8 +103,7 @@ impl ShadowMapsN {
         params: &Params,
     ) -> Result<Sources, TechniqueError> {
         let whole = ViewedLight::new(self.name(), &scene.lights[light], light)?;
-        let pattern = params.get(PATTERN.name).parse::<Pattern>();
-        let pattern = pattern.map_err(|_| self.bad(params, PATTERN, PATTERN.valid))?;
+        let pattern = mapped::pattern(self.name(), params, PATTERN)?;
         let seed = params.get(SEED.name).parse().unwrap_or(0);
         let points = light_points(&scene.lights[light], pattern, side, seed)?;
         let place = |point: &HardLight| match point {

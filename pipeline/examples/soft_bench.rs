@@ -2,7 +2,9 @@
 //! error against the exact oracle: our side of `docs/performance/beside-embree.sh`.
 //!
 //! `cargo run --release -p gnomon-pipeline --example soft_bench -- [--scenes abc] [--size 512]
-//! [--technique NAME] [--set key=value,...] [--budget SECONDS] [--threads N] [--json FILE] [--npy FOLDER]`
+//! [--technique NAME] [--set key=value,...] [--budget SECONDS] [--threads N] [--json FILE] [--npy FOLDER] [--errors on|off]`
+//!
+//! Without errors (for profiles) there is nothing of the oracle in the run.
 //!
 //! A frame is what the technique submits: everything but loading the scene, and
 //! finding silhouettes and building wedges, whose time is printed beside it. As
@@ -16,7 +18,7 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use gnomon_pipeline::comparison::{Reference, ReferenceKind};
-use gnomon_pipeline::metrics::visibility::VisibilityError;
+use gnomon_pipeline::metrics::visibility::{ErrorSummary, VisibilityError};
 use gnomon_pipeline::oracle::area::LightRegion;
 use gnomon_pipeline::render::{RenderSettings, render};
 use gnomon_pipeline::scene::{Scene, builtin};
@@ -32,6 +34,7 @@ struct Options {
     budget: Duration,
     json: Option<String>,
     npy: Option<String>,
+    errors: bool,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -57,6 +60,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
         budget: Duration::from_secs(3),
         json: None,
         npy: None,
+        errors: true,
     };
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     for pair in arguments.chunks(2) {
@@ -72,6 +76,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
             "--budget" => o.budget = Duration::from_secs_f64(value.parse()?),
             "--json" => o.json = Some(value.clone()),
             "--npy" => o.npy = Some(value.clone()),
+            "--errors" => o.errors = value == "on",
             _ => return Err(format!("unknown option {key}").into()),
         }
     }
@@ -96,11 +101,14 @@ fn measure_scene(o: &Options, scene: &Scene, name: char) -> Result<String, Box<d
     }
     times.sort_by(f64::total_cmp);
     let at = |share: usize| times[(times.len() - 1) * share / 4];
-    let error = errors(o, scene, &params, name)?;
-    let all = error.all.ok_or("no pixels to compare")?;
-    let penumbra = error
-        .of_region(LightRegion::Penumbra)
-        .map_or(0.0, |e| e.rmse);
+    let (all, penumbra) = if o.errors {
+        let error = errors(o, scene, &params, name)?;
+        let penumbra = error.of_region(LightRegion::Penumbra);
+        (error.all, penumbra.map_or(0.0, |e| e.rmse))
+    } else {
+        (ErrorSummary::of(&[0.0]), 0.0)
+    };
+    let all = all.ok_or("no pixels to compare")?;
     println!(
         "{} {}: frame {:.3} ms [{:.3}, {:.3}, min {:.3}, n {}], set-up {build_ms:.3} ms, RMSE {:.5}, penumbra RMSE {penumbra:.5}",
         name.to_uppercase(),

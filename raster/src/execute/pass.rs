@@ -431,7 +431,9 @@ fn referenced(d: &Draw, primitives: u32) -> std::borrow::Cow<'_, Referenced> {
 /// Vertex and index traffic of draw number `number` (rules §8).
 fn vertex_traffic(d: &Draw, units: &[Unit<'_>], number: usize) -> Counters {
     let mut c = Counters::default();
-    let mine = || units.iter().filter(|u| u.draw == number);
+    // Units are in the order of draws; a pass may have thousands.
+    let first = units.partition_point(|u| u.draw < number);
+    let mine = || units[first..].iter().take_while(|u| u.draw == number);
     let invocations: u64 = mine().map(|u| u.referenced.vertices.len() as u64).sum();
     c.primitives.vertex_shader_invocations = invocations;
     let read = |accesses: u64, bytes: u64| Traffic {

@@ -1,7 +1,7 @@
 //! Reading texels: gathers, one lane at a time, and decoding, over lanes.
 
 use super::plane::{Block, Block4, ColorBlocks, Plane};
-use super::{Layout, Texture};
+use super::{BLOCK, Layout, Texture};
 use crate::format::{D24_MAX, Format};
 use crate::simd::{F32, I32, LANES, Lanes, U32, each4};
 
@@ -89,6 +89,10 @@ impl Source<'_> {
 
     #[inline(always)]
     fn take<T: Copy + Into<u32>>(&self, blocks: &[Block<T>], out: &mut [u32; LANES]) {
+        if let Some((b, i)) = self.run() {
+            copy(&blocks[b].0, i, out);
+            return;
+        }
         if self.lanes == u16::MAX {
             for (lane, out) in out.iter_mut().enumerate() {
                 let (b, i) = self.place(lane);
@@ -104,12 +108,51 @@ impl Source<'_> {
 
     #[inline(always)]
     fn take_four<T: Copy + Into<u32>>(&self, blocks: &[Block4<T>], words: &mut Words) {
+        let [w0, w1, w2, w3] = words;
+        if let Some((b, i)) = self.run() {
+            let [c0, c1, c2, c3] = &blocks[b].0;
+            copy(c0, i, w0);
+            copy(c1, i, w1);
+            copy(c2, i, w2);
+            copy(c3, i, w3);
+            return;
+        }
         for lane in lanes_of(self.lanes) {
             let (b, i) = self.place(lane);
-            for (out, channel) in words.iter_mut().zip(&blocks[b].0) {
-                out[lane] = channel[i].into();
-            }
+            let [c0, c1, c2, c3] = &blocks[b].0;
+            w0[lane] = c0[i].into();
+            w1[lane] = c1[i].into();
+            w2[lane] = c2[i].into();
+            w3[lane] = c3[i].into();
         }
+    }
+
+    /// Where texels start that lie one behind the other in a block, as those of a
+    /// packet of fragments that each read their own pixel.
+    #[inline(always)]
+    fn run(&self) -> Option<(usize, usize)> {
+        let (x, y) = (self.t.x, self.t.y);
+        let mut off = (x[0] & (ROW - 1)) | (y[0] & (LANES as i32 / ROW - 1));
+        for lane in 0..LANES {
+            let step = lane as i32;
+            off |= x[lane].wrapping_sub(x[0]) ^ (step % ROW);
+            off |= y[lane].wrapping_sub(y[0]) ^ (step / ROW);
+        }
+        (self.lanes == u16::MAX && off == 0).then(|| self.place(0))
+    }
+}
+
+/// Pixels in a row of a block.
+const ROW: i32 = BLOCK as i32;
+
+/// As many words as there are lanes, from `first` on.
+#[inline(always)]
+fn copy<T: Copy + Into<u32>>(channel: &[T], first: usize, out: &mut [u32; LANES]) {
+    let Some(run) = channel.get(first..first + LANES) else {
+        return;
+    };
+    for (out, word) in out.iter_mut().zip(run) {
+        *out = (*word).into();
     }
 }
 
@@ -223,6 +266,43 @@ mod tests {
             _ => [word, 0, 0, 0],
         };
         resource::decode(format, channels).0
+    }
+
+    /// Packets that read their own pixels take whole runs; the same words as lane
+    /// by lane, wherever the packet is and whichever lanes read.
+    #[test]
+    fn runs_are_read_like_single_texels() {
+        for format in [Format::R32Float, Format::Rgba8Unorm, Format::Rgba32Float] {
+            let desc = super::super::TextureDescriptor::d2("numbered", format, 40, 24);
+            let mut texture = Texture::new(&desc).unwrap();
+            let texel = |k: u32| [0.0, 0.25, 0.5, 0.75].map(|c| (c + k as f32) / 1024.0);
+            let texels: Vec<_> = (0..40 * 24).map(texel).collect();
+            texture.write_color(Default::default(), &texels).unwrap();
+            let gather_at = |x: &[i32; LANES], y: &[i32; LANES], lanes| {
+                let texels = Texels {
+                    mip: 0,
+                    layer: &[0; LANES],
+                    x,
+                    y,
+                    lanes,
+                };
+                gather(&texture, Aspect::Main, &texels)
+            };
+            for (x0, y0) in [(0, 0), (8, 2), (32, 22), (3, 2), (8, 5), (24, 16)] {
+                let x = core::array::from_fn(|k| x0 + k as i32 % 8);
+                let y = core::array::from_fn(|k| y0 + k as i32 / 8);
+                let turned = core::array::from_fn(|k| y0 + (k as i32 / 8 + 1) % 2);
+                for (x, y) in [(&x, &y), (&x, &turned)] {
+                    let got = gather_at(x, y, u16::MAX);
+                    for lane in 0..LANES {
+                        let one = gather_at(x, y, 1 << lane);
+                        for (got, one) in got.iter().zip(&one) {
+                            assert_eq!(got[lane], one[lane], "{format:?} {x0} {y0} {lane}");
+                        }
+                    }
+                }
+            }
+        }
     }
 
     #[test]

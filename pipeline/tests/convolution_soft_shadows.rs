@@ -234,7 +234,6 @@ fn every_filter_gives_the_same_bits_everywhere() {
                 tile,
                 simd,
                 skip: turn % 2 == 0,
-                ..GpuConfig::default()
             };
             assert_eq!(of(gpu), expected, "{set:?} {simd} {tile}");
         }

@@ -11,16 +11,20 @@ use gnomon_pipeline::scene::builtin::PLATES;
 use gnomon_pipeline::scene::{Material, Object, Scene, builtin};
 use gnomon_pipeline::shape;
 use gnomon_pipeline::technique::{Params, find};
-use gnomon_raster::{Counters, GpuConfig};
+use gnomon_raster::{Counters, GpuConfig, SimdLevel};
 
 const SIZE: [u32; 2] = [120, 80];
 
 fn soft(scene: &Scene, set: &[&str]) -> Rendered {
+    with(scene, set, GpuConfig::default())
+}
+
+fn with(scene: &Scene, set: &[&str], gpu: GpuConfig) -> Rendered {
     let technique = find("convolution-soft-shadows").unwrap();
     let params = Params::parse(technique, set).unwrap();
     let settings = RenderSettings {
         size: SIZE,
-        gpu: GpuConfig::default(),
+        gpu,
         repeat: 1,
     };
     render(scene, technique, &params, &settings).unwrap()
@@ -84,7 +88,7 @@ fn parallel_plates_are_nearly_the_closed_form() {
     }
     // One term that rings, of a coarse picture, is off by far more.
     let fixed = [
-        &*"filter=sat",
+        "filter=sat",
         "a=0",
         "map-size=64",
         "m=1",
@@ -141,7 +145,7 @@ fn look_ups_are_counted_exactly() {
             (expected[1] + expected[2] + expected[3]) - whole * written,
             per_image * (2 * images + 1) * (reached - written)
         );
-        if set == &["filter=mip"] {
+        if set == ["filter=mip"] {
             assert_eq!(whole, 6 + 1);
         }
     }
@@ -201,6 +205,37 @@ fn what_only_skips_changes_no_bit() {
             if filter == "filter=mip" {
                 assert!(work(&lazy) < work(&all), "no level left out");
             }
+        }
+    }
+}
+
+/// The registry's suite covers the default; here the other ways to filter.
+#[test]
+fn every_filter_gives_the_same_bits_everywhere() {
+    let scene = builtin::build("creature").unwrap();
+    for set in [
+        &["filter=sat", "m=3"][..],
+        &["filter=sat", "edges=texel"],
+        &["filter=sat-u32"],
+        &["filter=sat-u32", "edges=texel", "iterate=1"],
+        &["filter=mip", "format=float", "ringing=double"],
+    ] {
+        let set = [set, &["map-size=64"]].concat();
+        let of = |gpu| {
+            let picture = with(&scene, &set, gpu);
+            (picture.color_hash(), picture.visibility_hash())
+        };
+        let expected = of(GpuConfig::default());
+        let ways = [(1, 16), (2, 64), (4, 128)];
+        for (turn, simd) in SimdLevel::available().into_iter().enumerate() {
+            let (threads, tile) = ways[turn % ways.len()];
+            let gpu = GpuConfig {
+                threads,
+                tile,
+                simd,
+                skip: turn % 2 == 0,
+            };
+            assert_eq!(of(gpu), expected, "{set:?} {simd} {tile}");
         }
     }
 }

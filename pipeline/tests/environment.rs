@@ -11,8 +11,8 @@ use gnomon_pipeline::light::HardLight;
 use gnomon_pipeline::metrics::visibility::VisibilityError;
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Scene, SceneSource};
-use gnomon_pipeline::technique::{Params, find, techniques};
-use gnomon_raster::{GpuConfig, SimdLevel};
+use gnomon_pipeline::technique::{Params, TextureSource, find, techniques};
+use gnomon_raster::{Gpu, GpuConfig, SimdLevel, Subresource, TextureDescriptor, TextureId};
 
 /// A scene under the procedural sky.
 fn under_sky(scene: &str, fit: FitSettings) -> Scene {
@@ -79,6 +79,62 @@ fn every_technique_draws_a_scene_under_an_environment() {
     }
 }
 
+/// Counts what a frame creates.
+struct Counted {
+    gpu: Gpu,
+    textures: usize,
+}
+
+impl TextureSource for Counted {
+    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
+        self.textures += 1;
+        self.gpu.create_texture(desc)
+    }
+
+    fn write(
+        &mut self,
+        texture: TextureId,
+        image: Subresource,
+        texels: &[[f32; 4]],
+    ) -> Result<(), gnomon_raster::Error> {
+        self.gpu.texture_mut(texture)?.write_color(image, texels)
+    }
+}
+
+/// Lights use textures in turn: tens of them need no more than a few.
+#[test]
+fn memory_does_not_grow_with_the_number_of_lights() {
+    let scenes = [3, 20].map(|n| under_sky("creature", lights(n)));
+    let cases = [
+        ("unshadowed", &[][..]),
+        ("shadow-volumes", &[]),
+        ("sampled-shadow-volumes", &["samples=1"]),
+        ("penumbra-wedges", &[]),
+        ("penumbra-wedges-restructured", &[]),
+        ("soft-shadow-volumes", &[]),
+        (
+            "soft-shadow-volumes",
+            &["backend=texture4d", "texture-size=8"],
+        ),
+        ("soft-shadow-volumes-optimised", &[]),
+        ("soft-shadow-volumes-optimised", &["coverage=lut"]),
+        ("mixed-lights", &["brightest=2"]),
+    ];
+    for (name, set) in cases {
+        let technique = find(name).unwrap();
+        let params = Params::parse(technique, set).unwrap();
+        let textures = scenes.each_ref().map(|scene| {
+            let gpu = Gpu::new(GpuConfig::default()).unwrap();
+            let mut source = Counted { gpu, textures: 0 };
+            technique
+                .frame(scene, [32, 24], &params, &mut source)
+                .unwrap();
+            source.textures
+        });
+        assert_eq!(textures[0], textures[1], "{name} {set:?}");
+    }
+}
+
 #[test]
 fn bits_do_not_depend_on_execution() {
     let scene = under_sky("creature", lights(6));
@@ -121,7 +177,7 @@ fn fitted_lights_come_near_the_reference() {
     );
     assert!(many.psnr > 30.0 && many.flip < 0.08, "{many:?}");
     let unshadowed = scored(&scene, "unshadowed", &[], &truth);
-    assert!(unshadowed.rmse > 2.0 * few.rmse, "{unshadowed:?}");
+    assert!(unshadowed.rmse > 1.5 * few.rmse, "{unshadowed:?}");
     let mean = FitSettings {
         residual: ResidualRule::Mean,
         ..lights(30)

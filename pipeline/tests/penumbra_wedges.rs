@@ -455,3 +455,29 @@ fn several_lights_of_all_kinds() {
         assert_eq!(bits(&parallel.visibility), bits(&hard.visibility));
     }
 }
+
+/// Lights use one buffer in turn: each finds it cleared, one without casters too.
+#[test]
+fn lights_leave_nothing_behind_in_the_buffer() {
+    let mut all = with_sphere(scene("creature"), 0.4);
+    let sun = Light {
+        shape: LightShape::Directional {
+            towards: DVec3::new(0.2, 1.0, 0.4),
+        },
+        colour: [0.5; 3],
+    };
+    all.lights.insert(0, sun); // drawn last
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let both = picture(&all, technique, &[]);
+        let alone = picture(&all, technique, &["light=0"]);
+        let bits = |p: &Rendered| p.visibility.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        assert!(bits(&both) == bits(&alone), "{technique}");
+        let mut bare = all.clone();
+        bare.objects.iter_mut().for_each(|o| o.casts = false);
+        let lit = picture(&bare, technique, &[]);
+        assert!(
+            lit.visibility.iter().all(|v| v.is_nan() || *v == 1.0),
+            "{technique}"
+        );
+    }
+}

@@ -16,7 +16,7 @@ use crate::output::files::{self, Batch};
 use crate::output::json::{FileDocument, RenderDocument, RenderJob, worker_threads};
 use crate::output::progress::Progress;
 use crate::output::tables::{self, Named};
-use crate::output::{self, npy, numbers, png};
+use crate::output::{self, npy, numbers, png, warnings};
 use crate::overlay;
 
 const DEFAULT_SIZE: [u32; 2] = [800, 600];
@@ -239,8 +239,8 @@ fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
     for figure in &done.figures {
         text += &format!("{}: {:.6}\n", figure.name, figure.value);
     }
-    for warning in &done.warnings {
-        text += &format!("warning: {}: {}\n", warning.code, warning.message);
+    for line in warnings::lines(&done.warnings) {
+        text += &format!("warning: {line}\n");
     }
     for file in files {
         text += &format!("wrote {} ({})\n", file.path, file.kind);

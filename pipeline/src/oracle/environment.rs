@@ -269,6 +269,20 @@ mod tests {
         assert!(samples(&cube, 64, 1) != samples(&cube, 64, 2));
     }
 
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let scene = builtin::build("creature").unwrap();
+        let surfaces = Surfaces::new(&scene);
+        let oracle = EnvironmentOracle::new(&surfaces, samples(&sky(32), 100, 1));
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let image = || oracle.image(&surfaces, &scene, [40, 30], true, &|| {});
+            pool.unwrap().install(image)
+        };
+        let one = with(1);
+        assert!(one == with(4) && one.iter().flatten().count() > 500);
+    }
+
     /// Under a white sky an open matt floor is as bright as its albedo, and what
     /// casters hide is missing: the errors of estimates fall with their number.
     #[test]

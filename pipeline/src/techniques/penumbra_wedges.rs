@@ -119,10 +119,9 @@ impl Technique for PenumbraWedges {
         };
         let mut list = vec![draws.ambient_pass(&targets)];
         let (mut warnings, mut uses) = (Vec::new(), Vec::new());
-        let mut first = None;
+        let buffer = penumbra::light_intensity(size, textures)?;
+        let visibility = penumbra::visibility(buffer);
         for &light in lights.iter().rev() {
-            let label = passes::label("light intensity", light, &lights);
-            let buffer = penumbra::light_intensity(&label, size, textures)?;
             let mut pass = penumbra::intensity_pass(
                 passes::label("wedges", light, &lights),
                 buffer,
@@ -134,13 +133,10 @@ impl Technique for PenumbraWedges {
             list.extend(penumbra::not_receiving_pass(
                 label, buffer, &targets, &draws,
             ));
-            let visibility = penumbra::visibility(buffer);
-            first = Some(visibility);
             let label = passes::label("lit", light, &lights);
             list.push(draws.lit_pass(&targets, light, &label, LitTest::Visibility(visibility)));
         }
-        let output = first.map_or(crate::technique::VisibilityOutput::Full, |v| v.output());
-        let mut frame = targets.frame(list, output);
+        let mut frame = targets.frame(list, visibility.output());
         frame.warnings = warnings;
         frame.casters = uses;
         Ok(frame)

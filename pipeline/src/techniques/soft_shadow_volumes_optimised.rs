@@ -22,6 +22,7 @@ use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
     Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
 };
+use gnomon_shaders::coverage::Image;
 use gnomon_shaders::soft_volumes::{CountTo, HardPlane};
 use gnomon_shaders::split_volumes::{
     AddVisibility, Combination, CombineGroups, Halves, SplitPenumbra, Tables,
@@ -141,6 +142,7 @@ impl Technique for SoftShadowVolumesOptimised {
         let lights = passes::lights(scene, params)?;
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut warnings = Vec::new();
+        let mut lookups = Lookups::default();
         for &number in lights.iter().rev() {
             let k = params.get(SPLIT.name).parse().unwrap_or(1);
             let parts = split(self.name(), &scene.lights[number], number, k)?;
@@ -159,7 +161,7 @@ impl Technique for SoftShadowVolumesOptimised {
                     targets: &targets,
                     positions,
                     buffers: &buffers,
-                    tables: lookups(&light, params, textures)?,
+                    tables: lookups.of(&light, params, textures)?,
                     light: &light,
                     params,
                 };
@@ -206,22 +208,32 @@ fn combination(params: &Params) -> Combination {
     }
 }
 
-/// Look-up textures, where one is asked for.
-fn lookups(
-    light: &SoftLight,
-    params: &Params,
-    textures: &mut dyn TextureSource,
-) -> Result<Option<(Tables, [TextureId; 3])>, TechniqueError> {
-    let tables = Tables {
-        coverage: params.get(COVERAGE.name) == "lut",
-        split: params.get(SPLIT_BITS.name) == "lut",
-    };
-    match light.sides.first() {
-        Some(side) if tables != Tables::default() => {
-            let made = split_tables::create(side.projector.image(), textures)?;
-            Ok(Some((tables, made)))
+/// Look-up textures of the lights of a frame, one set for each shape.
+#[derive(Default)]
+struct Lookups(Vec<(Image, [TextureId; 3])>);
+
+impl Lookups {
+    /// Those of a light, where some are asked for.
+    fn of(
+        &mut self,
+        light: &SoftLight,
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Option<(Tables, [TextureId; 3])>, TechniqueError> {
+        let tables = Tables {
+            coverage: params.get(COVERAGE.name) == "lut",
+            split: params.get(SPLIT_BITS.name) == "lut",
+        };
+        let Some(side) = light.sides.first().filter(|_| tables != Tables::default()) else {
+            return Ok(None);
+        };
+        let shape = side.projector.image();
+        if let Some((_, made)) = self.0.iter().find(|(of, _)| *of == shape) {
+            return Ok(Some((tables, *made)));
         }
-        _ => Ok(None),
+        let made = split_tables::create(shape, textures)?;
+        self.0.push((shape, made));
+        Ok(Some((tables, made)))
     }
 }
 

@@ -19,6 +19,7 @@ use crate::output::json::{FileDocument, RenderDocument, worker_threads};
 use crate::output::numbers;
 use crate::output::progress::Progress;
 use crate::output::tables::{self, Table};
+use crate::output::warnings;
 
 /// Frames per second where none are given.
 const RATE: f64 = 24.0;
@@ -131,10 +132,10 @@ fn summary(job: &Job, done: &Rendered, files: &[FileDocument], table: &Table) ->
         if settings.gpu.skip { "on" } else { "off" },
         table.to_text(),
     );
-    for warning in &done.warnings {
+    for line in warnings::lines(&done.warnings) {
         text += &format!(
-            "warning: last frame: {}: {}\n",
-            warning.code, warning.message
+            "warning: last frame: {line}
+"
         );
     }
     let folder = files.first().and_then(|f| Path::new(&f.path).parent());

@@ -14,8 +14,8 @@ use gnomon_shaders::light_view::LightMapping;
 use gnomon_shaders::shadow_maps::{Shadow, ShadowTo};
 use gnomon_shaders::transform::FullScreen;
 
-use notes::{Notes, Said};
-use params::MapParams;
+pub(super) use notes::{Notes, Said};
+pub(super) use params::MapParams;
 pub(super) use params::{
     BIAS, FIT, MAP_SIZE, Margin, NEAR, SKIP, SLOPE_BIAS, VIEW, pattern, square_side,
 };

@@ -5,14 +5,14 @@ use crate::technique::{Figure, Warning};
 
 /// What is said of the views of a frame.
 #[derive(Default)]
-pub(super) struct Notes {
-    pub(super) warnings: Vec<Warning>,
-    pub(super) figures: Vec<Figure>,
+pub(in crate::techniques) struct Notes {
+    pub(in crate::techniques) warnings: Vec<Warning>,
+    pub(in crate::techniques) figures: Vec<Figure>,
 }
 
 /// What is to be said of a light's views, together.
 #[derive(Default)]
-pub(super) struct Said {
+pub(in crate::techniques) struct Said {
     views: usize,
     cut: usize,
     limited: usize,
@@ -23,7 +23,7 @@ pub(super) struct Said {
 }
 
 impl Said {
-    pub(super) fn add(&mut self, fitted: &Fitted, bias: f64, size: u32) {
+    pub(in crate::techniques) fn add(&mut self, fitted: &Fitted, bias: f64, size: u32) {
         self.views += 1;
         self.cut += fitted.cut;
         self.limited += usize::from(fitted.limited);
@@ -35,7 +35,12 @@ impl Said {
     }
 
     /// `label` adds the light's number where there are several.
-    pub(super) fn into_notes(self, slope: f64, label: &dyn Fn(&str) -> String, notes: &mut Notes) {
+    pub(in crate::techniques) fn into_notes(
+        self,
+        slope: f64,
+        label: &dyn Fn(&str) -> String,
+        notes: &mut Notes,
+    ) {
         let mut figure = |name: &str, value: f64| {
             let name = label(name);
             notes.figures.push(Figure { name, value });

@@ -61,8 +61,8 @@ pub(in crate::techniques) struct MapParams {
     /// `None`: in proportion to the texels.
     bias: Option<f64>,
     /// `None`: the technique's.
-    pub(super) slope_bias: Option<f64>,
-    pub(super) skip: bool,
+    pub(in crate::techniques) slope_bias: Option<f64>,
+    pub(in crate::techniques) skip: bool,
 }
 
 impl MapParams {
@@ -100,7 +100,7 @@ impl MapParams {
     }
 
     /// The bias of a view, world units.
-    pub(super) fn bias(&self, fitted: &Fitted, margin: Margin) -> f64 {
+    pub(in crate::techniques) fn bias(&self, fitted: &Fitted, margin: Margin) -> f64 {
         let texel = fitted.texel(self.fitting.size) * fitted.range[1];
         self.bias.unwrap_or(texel * margin.bias)
     }

@@ -38,13 +38,13 @@ pub(super) fn interpolation(params: &Params) -> Interpolation {
     }
 }
 
-/// The light-intensity buffer of one light: signed 16 bits, 255 is full light.
+/// The light-intensity buffer, which all lights use in turn: signed 16 bits, 255
+/// is full light.
 pub(super) fn light_intensity(
-    label: &str,
     [width, height]: [u32; 2],
     textures: &mut dyn TextureSource,
 ) -> Result<TextureId, TechniqueError> {
-    let desc = TextureDescriptor::d2(label, Format::R16Sint, width, height);
+    let desc = TextureDescriptor::d2("light intensity", Format::R16Sint, width, height);
     Ok(textures.create(&desc)?)
 }
 

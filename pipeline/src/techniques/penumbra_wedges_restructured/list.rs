@@ -61,7 +61,8 @@ impl Builder<'_> {
     fn single_pass(&self, buffer: TextureId, draws: LightDraws, named: Named<'_>) -> Vec<Pass> {
         let mut list = Vec::new();
         let mut load = penumbra::cleared(FULL);
-        if !draws.tested.is_empty() {
+        // A light without wedges still needs its buffer cleared.
+        if draws.hard || !draws.tested.is_empty() {
             let label = named(if draws.hard { "volumes" } else { "umbra caps" });
             let mut pass = penumbra::intensity_pass(label, buffer, load);
             pass.depth_stencil = self.targets.depth_stencil(LoadOp::Load, LoadOp::Load);

@@ -60,8 +60,7 @@ use super::penumbra::screen::Screen;
 use super::penumbra::{self, EXTRA_WEDGES, INTERPOLATION};
 use crate::scene::Scene;
 use crate::technique::{
-    CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource,
-    VisibilityOutput, Warning,
+    CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
 };
 
 /// The registry's entry.
@@ -186,10 +185,9 @@ pub(crate) fn build(
         umbra_stencil: list::umbra_stencil(params, size, textures)?,
     };
     let mut built = Parts::default();
-    let mut first = None;
+    let buffer = penumbra::light_intensity(size, textures)?;
+    let visibility = penumbra::visibility(buffer);
     for &light in lights.iter().rev() {
-        let label = passes::label("light intensity", light, &lights);
-        let buffer = penumbra::light_intensity(&label, size, textures)?;
         let named = |what: &str| passes::label(what, light, &lights);
         built.offset = list.len();
         list.extend(builder.light_passes(light, buffer, &named, &mut built));
@@ -197,8 +195,6 @@ pub(crate) fn build(
         list.extend(penumbra::not_receiving_pass(
             label, buffer, &targets, &draws,
         ));
-        let visibility = penumbra::visibility(buffer);
-        first = Some(visibility);
         list.push(draws.lit_pass(
             &targets,
             light,
@@ -206,8 +202,7 @@ pub(crate) fn build(
             LitTest::Visibility(visibility),
         ));
     }
-    let output = first.map_or(VisibilityOutput::Full, |v| v.output());
-    let mut frame = targets.frame(list, output);
+    let mut frame = targets.frame(list, visibility.output());
     frame.warnings = built.warnings;
     frame.casters = built.uses;
     Ok(Built {

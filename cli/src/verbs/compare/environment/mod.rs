@@ -21,7 +21,7 @@ use crate::output::json::{FileDocument, worker_threads};
 use crate::output::numbers::{self, error};
 use crate::output::progress::Progress;
 use crate::output::tables::{self, Table};
-use crate::output::{self, png};
+use crate::output::{self, png, warnings};
 use crate::verbs;
 
 /// Numbers of lights where none are given: the paper's.
@@ -251,14 +251,9 @@ fn summary(job: &Job, ms: f64, measured: &[Measured<'_>], files: &[FileDocument]
         }
         text += &format!("\n{}", table.to_text());
     }
-    let mut told: Vec<String> = Vec::new();
     for m in measured {
-        for w in &m.done.warnings {
-            let line = format!("warning: {}: {}: {}\n", m.label, w.code, w.message);
-            if !told.contains(&line) {
-                text += &line;
-                told.push(line);
-            }
+        for line in warnings::lines(&m.done.warnings) {
+            text += &format!("warning: {}: {line}\n", m.label);
         }
     }
     for file in files {

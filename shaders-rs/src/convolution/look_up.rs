@@ -115,18 +115,24 @@ impl Prefiltered for Mipmaps {
     #[inline(always)]
     fn window<L: Lanes>(&self, l: L, r: &Rectangle<L>) -> Squares<L> {
         let side = self.side as f32;
+        let (mut centre, mut half) = (r.centre, r.half);
+        let mut share = F32::splat(l, 1.0);
         // No less than a texel, as lights without width have it.
         let least = F32::splat(l, 0.5 / side);
-        let half = [r.half[0].max(least), r.half[1].max(least)];
+        for k in 0..2 {
+            let whole = half[k].max(least);
+            let (low, high) = (centre[k] - whole, centre[k] + whole);
+            share = share * part(low, high, 1.0);
+            // What is outside is empty: squares are of the part inside.
+            let (low, high) = (low.clamp(0.0, 1.0), high.clamp(0.0, 1.0));
+            centre[k] = (low + high) * 0.5;
+            half[k] = ((high - low) * 0.5).max(least);
+        }
         let area = (half[0] * (2.0 * side)) * (half[1] * (2.0 * side));
         let width = (area * (1.0 / self.probes as f32)).sqrt();
         let levels = self.side.trailing_zeros() as f32;
         let lod = (log2(width.clamp(1.0, side)) + self.lod_bias).clamp(0.0, levels);
         let margin = exp2(lod.ceil()) * (0.5 / side);
-        let centre = r.centre;
-        let [u, v] = [0, 1];
-        let share = part(centre[u] - half[u], centre[u] + half[u], 1.0)
-            * part(centre[v] - half[v], centre[v] + half[v], 1.0);
         Squares {
             rectangle: Rectangle { centre, half },
             lod,

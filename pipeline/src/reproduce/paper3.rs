@@ -224,7 +224,7 @@ fn passes(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             .filter(|p| p.label == label)
             .count()
     };
-    let wedges = draws(&done, "penumbra");
+    let wedges = draws(&done, "penumbra aside");
     let per_wedge = of("wedges") as f64 / wedges as f64;
     Ok(Finding {
         scene: lab.describe("cylinder"),

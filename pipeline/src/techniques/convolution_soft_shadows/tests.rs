@@ -233,12 +233,12 @@ fn an_exact_step_is_the_closed_form_to_a_texel() {
 /// Every look-up path gives what naive sums give.
 #[test]
 fn the_shaders_find_what_the_twin_finds() {
-    for name in ["cylinder", "creature", "spheres"] {
+    for name in ["cylinder", "spheres"] {
         let scene = builtin::build(name).unwrap();
         let bits = &["filter=sat-u32", "a=0", "map-size=64", "m=5"][..];
         let floats = &["filter=sat", "a=0", "map-size=64", "m=5"];
-        // Tables of 64 x 64 floats lose a few 1e-4 in a kernel of one texel.
-        for (set, allowed) in [(bits, 2e-4), (floats, 6e-3)] {
+        // Integers have 20 bits here; sums of 64 x 64 floats lose some 1e-4 of a texel.
+        for (set, allowed) in [(bits, 2e-5), (floats, 3e-4)] {
             let ran = Remembering::run(&scene, set);
             let series = Series::new(5, Suppression::Scale, 1.0);
             let twin = Twin::new(&scene, &ran, Test::Series(series));

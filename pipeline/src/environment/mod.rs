@@ -2,7 +2,7 @@
 //! direction, and area lights that stand for it (Annen et al. 2008, §4.2;
 //! IMPLEMENTING §1.7).
 //!
-//! A map is read ([`read`]), spread over the six faces of a cube ([`layout`]) and
+//! A map is read (`read`), spread over the six faces of a cube (`layout`) and
 //! kept as whole numbers of energy ([`cube`]). [`fit`] takes rectangles of energy
 //! out of the faces; what it leaves is the residual. Since energy is counted in
 //! integers, lights and residual sum to the map exactly, in each colour.

@@ -136,13 +136,16 @@ impl<L: Lanes> Writer<'_, L> {
     fn constant_words(&mut self, block: &mut [u32; 64], word: u32, live: u64) {
         let s = U32::splat(self.l, word);
         let op = self.target.blend.as_ref().and_then(BlendState::bytewise);
+        let mut same = 0;
         for k in 0..PACKETS {
             let (words, live) = (words(block, k), (live >> (16 * k)) as u16);
-            match op {
+            let silent = match op {
                 Some(op) => self.rgba8_plain(words, s, op, live),
                 None => self.store32(words, s, live),
-            }
+            };
+            same |= u64::from(silent) << (16 * k);
         }
+        self.silent(same);
     }
 
     #[inline(always)]
@@ -150,8 +153,9 @@ impl<L: Lanes> Writer<'_, L> {
         &mut self,
         out: &[PacketOutput; PACKETS],
         live: u64,
-        mut f: impl FnMut(&mut Self, usize, &Channels<F32<L>>, u16),
+        mut f: impl FnMut(&mut Self, usize, &Channels<F32<L>>, u16) -> u16,
     ) {
+        let mut same = 0;
         for (k, out) in out.iter().enumerate() {
             let live = (live >> (16 * k)) as u16;
             if live != 0 {
@@ -161,13 +165,16 @@ impl<L: Lanes> Writer<'_, L> {
                     #[inline(always)]
                     |c| F32::from_array(l, &color[c]),
                 );
-                f(self, k, &src, live);
+                same |= u64::from(f(self, k, &src, live)) << (16 * k);
             }
         }
+        self.silent(same);
     }
 
+    /// Counts the fragments whose texel keeps its bits; once a block, since a counter
+    /// in memory can be added to only every few cycles.
     #[inline(always)]
-    fn silent(&mut self, same: u16) {
+    fn silent(&mut self, same: u64) {
         if COUNT {
             self.c.events.silent_color_writes[self.attachment] += u64::from(same.count_ones());
         }
@@ -180,14 +187,14 @@ impl<L: Lanes> Writer<'_, L> {
         }
     }
 
-    /// Masked store of whole words.
+    /// Masked store of whole words; gives the lanes that stay what they are.
     #[inline(always)]
-    fn store32(&mut self, words: &mut [u32; LANES], new: U32<L>, live: u16) {
+    fn store32(&mut self, words: &mut [u32; LANES], new: U32<L>, live: u16) -> u16 {
         let old = U32::from_array(self.l, words);
-        self.silent(new.eq(old).bits() & live);
         Mask::from_bits(self.l, live)
             .select_u32(new, old)
             .store(words);
+        if COUNT { new.eq(old).bits() & live } else { 0 }
     }
 
     /// Source channels as bytes, limited and rounded half to even; counts what
@@ -239,7 +246,7 @@ impl<L: Lanes> Writer<'_, L> {
     }
 
     #[inline(always)]
-    fn rgba8(&mut self, words: &mut [u32; LANES], src: &Channels<F32<L>>, live: u16) {
+    fn rgba8(&mut self, words: &mut [u32; LANES], src: &Channels<F32<L>>, live: u16) -> u16 {
         let l = self.l;
         if self.target.mask == ColorWrites::ALL {
             let plain = self.target.blend.as_ref().map(BlendState::bytewise);
@@ -268,12 +275,18 @@ impl<L: Lanes> Writer<'_, L> {
                 }
             },
         );
-        self.store32(words, pack(&kept), live);
+        self.store32(words, pack(&kept), live)
     }
 
     /// Blending whose factors are all One, or that has none: byte arithmetic.
     #[inline(always)]
-    fn rgba8_plain(&mut self, words: &mut [u32; LANES], s: U32<L>, op: BlendOperation, live: u16) {
+    fn rgba8_plain(
+        &mut self,
+        words: &mut [u32; LANES],
+        s: U32<L>,
+        op: BlendOperation,
+        live: u16,
+    ) -> u16 {
         let old = U32::from_array(self.l, words);
         let (sb, db): (u8x64<L::Isa>, u8x64<L::Isa>) = (s.v.bitcast(), old.v.bitcast());
         let (new, wrapped) = match op {
@@ -289,7 +302,7 @@ impl<L: Lanes> Writer<'_, L> {
                 self.saturated((limited & spread(live)).count_ones());
             }
         }
-        self.store32(words, U32::new(self.l, new.bitcast()), live);
+        self.store32(words, U32::new(self.l, new.bitcast()), live)
     }
 
     #[inline(always)]
@@ -300,7 +313,7 @@ impl<L: Lanes> Writer<'_, L> {
         k: usize,
         src: &Channels<F32<L>>,
         live: u16,
-    ) {
+    ) -> u16 {
         let s = self.bytes(src, live);
         let at = 16 * k..16 * k + 16;
         let raw: [u32; LANES] = match &*tile {
@@ -331,7 +344,7 @@ impl<L: Lanes> Writer<'_, L> {
             },
         );
         let mut words = raw;
-        self.store32(&mut words, pack(&kept), live);
+        let same = self.store32(&mut words, pack(&kept), live);
         match tile {
             ColorTile::B8(b) => b[block].0[at]
                 .iter_mut()
@@ -343,6 +356,7 @@ impl<L: Lanes> Writer<'_, L> {
                 .for_each(|(b, w)| *b = w as u16),
             _ => {}
         }
+        same
     }
 
     /// The formulas of `state::blend`, channel by channel.
@@ -390,7 +404,7 @@ impl<L: Lanes> Writer<'_, L> {
 
     /// R16Sint: exact, saturating; factors are One or Zero.
     #[inline(always)]
-    fn sint16(&mut self, words: &mut [u16; LANES], src: F32<L>, live: u16) {
+    fn sint16(&mut self, words: &mut [u16; LANES], src: F32<L>, live: u16) -> u16 {
         let l = self.l;
         let rounded = src.round_ties_even();
         let (lo, hi) = (F32::splat(l, -32768.0), F32::splat(l, 32767.0));
@@ -409,12 +423,12 @@ impl<L: Lanes> Writer<'_, L> {
             Some(b) => self.blend_sint16(&b.color, s, d, live),
         };
         let same = new.eq(d).bits() & live;
-        self.silent(same);
         for (i, (w, n)) in words.iter_mut().zip(new.to_array()).enumerate() {
             if live >> i & 1 != 0 {
                 *w = n as u16;
             }
         }
+        same
     }
 
     #[inline(always)]
@@ -452,7 +466,7 @@ impl<L: Lanes> Writer<'_, L> {
         k: usize,
         src: &Channels<F32<L>>,
         live: u16,
-    ) {
+    ) -> u16 {
         let l = self.l;
         let format = self.target.format;
         let half = matches!(format, Format::R16Float | Format::Rgba16Float);
@@ -501,7 +515,7 @@ impl<L: Lanes> Writer<'_, L> {
                 &Mask::from_bits(l, live).select_u32(new, was).to_array(),
             );
         }
-        self.silent(same);
+        same
     }
 }
 

@@ -180,8 +180,9 @@ impl<'a> Executor<'a> {
             }
         }
         for desk in desks.into_all() {
-            for (c, s) in counters.iter_mut().zip(desk.scratch.counters) {
-                c.add(&s.into_counters());
+            let drawn = counters.iter_mut().zip(&self.prepared);
+            for ((c, p), s) in drawn.zip(desk.scratch.counters) {
+                c.add(&s.into_counters(&p.config));
             }
             if let Some(all) = &mut accesses {
                 all.extend(desk.accesses);

@@ -150,6 +150,7 @@ fn draw_config<'a>(
         depth_reversed: ends[0] > ends[1],
         hiz: gpu.config.skip && depth_tested && ds.depth.bounds.is_none() && !outputs.depth,
         lean: false,
+        counting: None,
         plain: draw.pipeline.primitive.clip_planes.is_empty() && ds.depth.bounds.is_none(),
         needs_depth: depth_tested
             || (attached && ds.depth.write)
@@ -178,6 +179,7 @@ fn draw_config<'a>(
             .collect(),
     };
     config.lean = config.is_lean();
+    config.counting = config.counts_alike();
     config
 }
 

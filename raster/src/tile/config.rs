@@ -133,6 +133,9 @@ pub(crate) struct DrawConfig<'a> {
     /// Plain, tests do not wait for the shader, and the stencil only tests or only
     /// counts: the kernel of `lean` applies.
     pub(crate) lean: bool,
+    /// Whether both faces count in the stencil on depth failure and on pass, where
+    /// they do so alike.
+    pub(crate) counting: Option<[bool; 2]>,
     /// Fragment depth is looked at by anything.
     pub(crate) needs_depth: bool,
     /// Front, back.
@@ -157,6 +160,14 @@ impl DrawConfig<'_> {
     pub(crate) fn is_lean(&self) -> bool {
         let face = |f| !self.is_late(f) && f.is_lean();
         self.plain && self.stencil.iter().all(face)
+    }
+
+    /// What [`Self::counting`] should be.
+    pub(crate) fn counts_alike(&self) -> Option<[bool; 2]> {
+        let [front, back] = self
+            .stencil
+            .map(|f| f.counts.map(|steps| steps.map(|s| s != 0)));
+        front.filter(|_| front == back)
     }
 
     /// Stencil state of the side that the triangle shows.

@@ -9,7 +9,7 @@ use super::target::DepthTile;
 use super::{COUNT, TileStageCounters, output, stencil};
 use crate::geometry::Triangle;
 use crate::shader::PACKETS;
-use crate::simd::{I32, Lanes, outlined};
+use crate::simd::{I32, Lanes, Mask, each4, outlined};
 use crate::state::CompareFunction;
 use crate::texture::{Block, HIZ_STALE};
 
@@ -49,7 +49,6 @@ impl<const SHADED: bool> BlockStage for Lean<SHADED> {
             }
             alive = block::shaded(l, env, t, place, plane, alive);
         }
-        count(&mut env.counters.fragments.written, alive);
         if SHADED && alive != 0 {
             output::write(l, env, place, alive);
         }
@@ -117,14 +116,9 @@ fn tests<L: Lanes, const D24: bool>(
     };
     count(&mut c.fragments.depth_failed, reached & !passed);
     if let Some([on_fail, on_pass]) = face.counts {
-        add(
-            l,
-            c,
-            &mut d.stencil[place.index],
-            reached & !passed,
-            on_fail,
-        );
-        add(l, c, &mut d.stencil[place.index], passed, on_pass);
+        let block = &mut d.stencil[place.index];
+        add(l, config, c, block, reached & !passed, on_fail);
+        add(l, config, c, block, passed, on_pass);
     }
     passed
 }
@@ -152,10 +146,19 @@ fn stencil_test<L: Lanes>(
 
 /// Counts ±1 on the pixels of `mask`.
 #[inline(always)]
-fn add<L: Lanes>(l: L, c: &mut TileStageCounters, stored: &mut Block<u8>, mask: u64, step: i8) {
+fn add<L: Lanes>(
+    l: L,
+    config: &DrawConfig<'_>,
+    c: &mut TileStageCounters,
+    stored: &mut Block<u8>,
+    mask: u64,
+    step: i8,
+) {
     if step != 0 && mask != 0 {
-        count(&mut c.accesses.stencil_read, mask);
-        count(&mut c.accesses.stencil_write, mask);
+        if config.counting.is_none() {
+            count(&mut c.accesses.stencil_read, mask);
+            count(&mut c.accesses.stencil_write, mask);
+        }
         outlined(
             l,
             #[inline(always)]
@@ -212,26 +215,24 @@ fn write_depth<L: Lanes, const D24: bool>(
     if COUNT {
         c.accesses.hiz_write += 1;
     }
-    count(&mut c.accesses.z_write, mask);
     let stored = &mut d.depth[index];
     let differs = matches!(
         config.compare,
         CompareFunction::Less | CompareFunction::Greater | CompareFunction::NotEqual
     );
-    let same = packets(
-        #[inline(always)]
-        |k| {
-            let m = (mask >> (16 * k)) as u16;
-            let same = if differs || !COUNT {
-                0
-            } else {
-                z[k].eq(depth::load(l, stored, k)).bits() & m
-            };
-            depth::store(l, stored, k, z[k], m);
-            same
-        },
-    );
-    count(&mut c.events.silent_z_writes, same);
+    if COUNT && !differs {
+        let same = each4(
+            #[inline(always)]
+            |k| {
+                let m = Mask::from_bits(l, (mask >> (16 * k)) as u16);
+                z[k].eq(depth::load(l, stored, k)) & m
+            },
+        );
+        block::count_lanes(&mut c.events.silent_z_writes, &same);
+    }
+    for (k, z) in z.iter().enumerate() {
+        depth::store(l, stored, k, *z, (mask >> (16 * k)) as u16);
+    }
     [d.hiz_min[index], d.hiz_max[index]] = if mask == u64::MAX && inside == u64::MAX {
         plane.span()
     } else {

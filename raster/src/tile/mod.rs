@@ -46,8 +46,11 @@ pub(crate) struct TileStageCounters {
 }
 
 impl TileStageCounters {
-    /// As the counters of a draw, to be added to the geometry stage's.
-    pub(crate) fn into_counters(self) -> Counters {
+    /// As the counters of the draw of `config`, to be added to the geometry stage's.
+    pub(crate) fn into_counters(mut self, config: &DrawConfig<'_>) -> Counters {
+        if COUNT {
+            self.derive(config);
+        }
         let mut accesses = self.accesses;
         accesses.tex_fetch = self.shader.fetches;
         accesses.tex_texel = self.shader.texels;
@@ -58,6 +61,36 @@ impl TileStageCounters {
             events: self.events,
             accesses,
             ..Counters::default()
+        }
+    }
+
+    /// What follows from other counts is not counted block by block.
+    fn derive(&mut self, config: &DrawConfig<'_>) {
+        let f = &mut self.fragments;
+        let tested = f.generated - f.hiz_killed - f.bounds_failed;
+        let unshaded = tested - f.stencil_failed - f.depth_failed;
+        f.written = unshaded - f.discarded;
+        let a = &mut self.accesses;
+        a.hiz_read = self.tiles.tested;
+        if config.shader.is_some() {
+            for (i, target) in config.targets.iter().enumerate() {
+                a.color_write[i] = u64::from(target.mask.0 != 0) * f.written;
+                a.color_read[i] = u64::from(target.reads) * f.written;
+            }
+        }
+        if !config.lean {
+            return;
+        }
+        // Tests come before the shader, and whatever passes them is shaded and stored.
+        if config.shader.is_some() {
+            self.invocations = unshaded;
+        }
+        if config.depth_write {
+            a.z_write = unshaded;
+        }
+        if let Some([failed, passed]) = config.counting {
+            a.stencil_write = u64::from(failed) * f.depth_failed + u64::from(passed) * unshaded;
+            a.stencil_read = a.stencil_write;
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Bytes as _, SimdBase as _, SimdInt as _, SimdMask as _, u8x64};
 
-use super::block::{Env, Place};
+use super::block::{self, Env, Place};
 use super::config::TargetConfig;
 use super::target::ColorTile;
 use super::{COUNT, TileStageCounters};
@@ -19,12 +19,6 @@ pub(super) fn write<L: Lanes>(l: L, env: &mut Env<'_, '_>, place: Place, live: u
     for (i, target) in env.config.targets.iter().enumerate() {
         if target.mask.0 == 0 {
             continue;
-        }
-        if COUNT {
-            let n = u64::from(live.count_ones());
-            let a = &mut env.counters.accesses;
-            a.color_write[i] += n;
-            a.color_read[i] += if target.reads { n } else { 0 };
         }
         let mut w = Writer {
             l,
@@ -136,16 +130,17 @@ impl<L: Lanes> Writer<'_, L> {
     fn constant_words(&mut self, block: &mut [u32; 64], word: u32, live: u64) {
         let s = U32::splat(self.l, word);
         let op = self.target.blend.as_ref().and_then(BlendState::bytewise);
-        let mut same = 0;
-        for k in 0..PACKETS {
-            let (words, live) = (words(block, k), (live >> (16 * k)) as u16);
-            let silent = match op {
-                Some(op) => self.rgba8_plain(words, s, op, live),
-                None => self.store32(words, s, live),
-            };
-            same |= u64::from(silent) << (16 * k);
-        }
-        self.silent(same);
+        let same = each4(
+            #[inline(always)]
+            |k| {
+                let (words, live) = (words(block, k), (live >> (16 * k)) as u16);
+                match op {
+                    Some(op) => self.rgba8_plain(words, s, op, live),
+                    None => self.store32(words, s, live),
+                }
+            },
+        );
+        self.silent(&same);
     }
 
     #[inline(always)]
@@ -153,31 +148,35 @@ impl<L: Lanes> Writer<'_, L> {
         &mut self,
         out: &[PacketOutput; PACKETS],
         live: u64,
-        mut f: impl FnMut(&mut Self, usize, &Channels<F32<L>>, u16) -> u16,
+        mut f: impl FnMut(&mut Self, usize, &Channels<F32<L>>, u16) -> Mask<L>,
     ) {
-        let mut same = 0;
-        for (k, out) in out.iter().enumerate() {
-            let live = (live >> (16 * k)) as u16;
-            if live != 0 {
-                let l = self.l;
-                let color = &out.color[self.attachment];
+        let l = self.l;
+        let same = each4(
+            #[inline(always)]
+            |k| {
+                let live = (live >> (16 * k)) as u16;
+                if live == 0 {
+                    return Mask::from_bits(l, 0);
+                }
+                let color = &out[k].color[self.attachment];
                 let src = each4(
                     #[inline(always)]
                     |c| F32::from_array(l, &color[c]),
                 );
-                same |= u64::from(f(self, k, &src, live)) << (16 * k);
-            }
-        }
-        self.silent(same);
+                f(self, k, &src, live)
+            },
+        );
+        self.silent(&same);
     }
 
     /// Counts the fragments whose texel keeps its bits; once a block, since a counter
     /// in memory can be added to only every few cycles.
     #[inline(always)]
-    fn silent(&mut self, same: u64) {
-        if COUNT {
-            self.c.events.silent_color_writes[self.attachment] += u64::from(same.count_ones());
-        }
+    fn silent(&mut self, same: &[Mask<L>; PACKETS]) {
+        block::count_lanes(
+            &mut self.c.events.silent_color_writes[self.attachment],
+            same,
+        );
     }
 
     #[inline(always)]
@@ -189,12 +188,11 @@ impl<L: Lanes> Writer<'_, L> {
 
     /// Masked store of whole words; gives the lanes that stay what they are.
     #[inline(always)]
-    fn store32(&mut self, words: &mut [u32; LANES], new: U32<L>, live: u16) -> u16 {
+    fn store32(&mut self, words: &mut [u32; LANES], new: U32<L>, live: u16) -> Mask<L> {
         let old = U32::from_array(self.l, words);
-        Mask::from_bits(self.l, live)
-            .select_u32(new, old)
-            .store(words);
-        if COUNT { new.eq(old).bits() & live } else { 0 }
+        let live = Mask::from_bits(self.l, live);
+        live.select_u32(new, old).store(words);
+        new.eq(old) & live
     }
 
     /// Source channels as bytes, limited and rounded half to even; counts what
@@ -246,7 +244,7 @@ impl<L: Lanes> Writer<'_, L> {
     }
 
     #[inline(always)]
-    fn rgba8(&mut self, words: &mut [u32; LANES], src: &Channels<F32<L>>, live: u16) -> u16 {
+    fn rgba8(&mut self, words: &mut [u32; LANES], src: &Channels<F32<L>>, live: u16) -> Mask<L> {
         let l = self.l;
         if self.target.mask == ColorWrites::ALL {
             let plain = self.target.blend.as_ref().map(BlendState::bytewise);
@@ -286,7 +284,7 @@ impl<L: Lanes> Writer<'_, L> {
         s: U32<L>,
         op: BlendOperation,
         live: u16,
-    ) -> u16 {
+    ) -> Mask<L> {
         let old = U32::from_array(self.l, words);
         let (sb, db): (u8x64<L::Isa>, u8x64<L::Isa>) = (s.v.bitcast(), old.v.bitcast());
         let (new, wrapped) = match op {
@@ -313,7 +311,7 @@ impl<L: Lanes> Writer<'_, L> {
         k: usize,
         src: &Channels<F32<L>>,
         live: u16,
-    ) -> u16 {
+    ) -> Mask<L> {
         let s = self.bytes(src, live);
         let at = 16 * k..16 * k + 16;
         let raw: [u32; LANES] = match &*tile {
@@ -404,7 +402,7 @@ impl<L: Lanes> Writer<'_, L> {
 
     /// R16Sint: exact, saturating; factors are One or Zero.
     #[inline(always)]
-    fn sint16(&mut self, words: &mut [u16; LANES], src: F32<L>, live: u16) -> u16 {
+    fn sint16(&mut self, words: &mut [u16; LANES], src: F32<L>, live: u16) -> Mask<L> {
         let l = self.l;
         let rounded = src.round_ties_even();
         let (lo, hi) = (F32::splat(l, -32768.0), F32::splat(l, 32767.0));
@@ -422,7 +420,7 @@ impl<L: Lanes> Writer<'_, L> {
             None => s,
             Some(b) => self.blend_sint16(&b.color, s, d, live),
         };
-        let same = new.eq(d).bits() & live;
+        let same = new.eq(d) & Mask::from_bits(l, live);
         for (i, (w, n)) in words.iter_mut().zip(new.to_array()).enumerate() {
             if live >> i & 1 != 0 {
                 *w = n as u16;
@@ -466,7 +464,7 @@ impl<L: Lanes> Writer<'_, L> {
         k: usize,
         src: &Channels<F32<L>>,
         live: u16,
-    ) -> u16 {
+    ) -> Mask<L> {
         let l = self.l;
         let format = self.target.format;
         let half = matches!(format, Format::R16Float | Format::Rgba16Float);
@@ -483,7 +481,8 @@ impl<L: Lanes> Writer<'_, L> {
             },
         );
         let d_alpha = if n == 4 { d[3] } else { F32::splat(l, 1.0) };
-        let mut same = live;
+        let lanes = Mask::from_bits(l, live);
+        let mut same = lanes;
         for c in (0..n).filter(|&c| self.target.mask.contains(c)) {
             let v = match self.target.blend {
                 None => src[c],
@@ -506,14 +505,8 @@ impl<L: Lanes> Writer<'_, L> {
                 v.to_bits()
             };
             let was = U32::from_array(l, &old[c]);
-            same &= new.eq(was).bits();
-            store_channel(
-                tile,
-                block,
-                k,
-                c,
-                &Mask::from_bits(l, live).select_u32(new, was).to_array(),
-            );
+            same = same & new.eq(was);
+            store_channel(tile, block, k, c, &lanes.select_u32(new, was).to_array());
         }
         same
     }

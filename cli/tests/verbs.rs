@@ -59,7 +59,7 @@ fn demo_writes_pictures_and_report_and_checks_itself() {
     let doc = run.json();
     assert_eq!(doc["checks"]["skipping_is_invisible"], true);
     assert_eq!(doc["checks"]["methods_agree"], true);
-    assert_eq!(doc["renders"].as_array().unwrap().len(), 4);
+    assert_eq!(doc["renders"].as_array().unwrap().len(), 7);
     let rmse: Vec<f64> = doc["errors"]
         .as_array()
         .unwrap()
@@ -67,7 +67,8 @@ fn demo_writes_pictures_and_report_and_checks_itself() {
         .map(|e| e["rmse"].as_f64().unwrap())
         .collect();
     assert!(rmse[0] > 2.0 * rmse[1] && rmse[1] > 0.01, "{rmse:?}");
-    assert!(rmse[1..].iter().all(|r| *r == rmse[1]) && rmse.len() == 4);
+    assert!(rmse[1..4].iter().all(|r| *r == rmse[1]) && rmse.len() == 7);
+    assert!(rmse[4] < 0.6 * rmse[1], "soft shadows are nearer: {rmse:?}");
     for file in doc["files"].as_array().unwrap() {
         assert!(
             folder.path(file["path"].as_str().unwrap()).is_file(),
@@ -75,7 +76,7 @@ fn demo_writes_pictures_and_report_and_checks_itself() {
         );
     }
     let html = std::fs::read_to_string(folder.path("out/report.html")).unwrap();
-    assert_eq!(html.matches("data:image/png;base64,").count(), 9);
+    assert_eq!(html.matches("data:image/png;base64,").count(), 12);
     assert!(!html.contains("http"), "the page is self-contained");
 }
 

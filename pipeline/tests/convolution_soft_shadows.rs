@@ -130,7 +130,7 @@ fn look_ups_are_counted_exactly() {
         (&["filter=mip", "m=16"], 1, 8),
         (&["filter=sat", "m=5"], 4, 3),
     ] {
-        let c = counted(&soft(&scene, set), "convolution");
+        let c = counted(&soft(&scene, set), "look-up");
         let fetches = &c.traffic.tex_fetches;
         let (shaded, written) = (c.fragment_shader_invocations, c.fragments.written);
         let reached = fetches[3] / per_image;
@@ -150,7 +150,7 @@ fn look_ups_are_counted_exactly() {
         }
     }
     // Iterating looks up the average again.
-    let c = counted(&soft(&scene, &["iterate=2"]), "convolution");
+    let c = counted(&soft(&scene, &["iterate=2"]), "look-up");
     assert!(c.traffic.tex_fetches[3] > 2 * c.fragments.written);
 }
 

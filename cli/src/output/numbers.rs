@@ -5,6 +5,11 @@ pub(crate) fn count(n: u64) -> String {
     scaled(n, &["", "k", "M", "G", "T", "P", "E"])
 }
 
+/// A count in at most four characters, two digits of it: `950`, `12k`, `4.6M`.
+pub(crate) fn rough_count(n: u64) -> String {
+    rounded(n, &["", "k", "M", "G", "T", "P", "E"], 2)
+}
+
 /// Bytes, decimal units: `950 B`, `12.3 kB`, `4.56 MB`.
 pub(crate) fn bytes(n: u64) -> String {
     scaled(n, &[" B", " kB", " MB", " GB", " TB", " PB", " EB"])
@@ -44,16 +49,27 @@ pub(crate) fn percent(part: u64, whole: u64) -> String {
 }
 
 fn scaled(n: u64, units: &[&str]) -> String {
+    rounded(n, units, 3)
+}
+
+/// `n` in the unit that leaves at most three digits before the point, with as many
+/// behind it as make `digits`.
+fn rounded(n: u64, units: &[&str], digits: usize) -> String {
     let mut value = n as f64;
     let mut unit = 0;
     while value >= 999.5 && unit + 1 < units.len() {
         value /= 1e3;
         unit += 1;
     }
-    let decimals = match value {
-        _ if unit == 0 || value >= 99.95 => 0,
-        _ if value >= 9.995 => 1,
-        _ => 2,
+    let whole = match value {
+        _ if value >= 99.95 => 3,
+        _ if value >= 9.995 => 2,
+        _ => 1,
+    };
+    let decimals = if unit == 0 {
+        0
+    } else {
+        digits.saturating_sub(whole)
     };
     format!("{value:.decimals$}{}", units[unit])
 }
@@ -61,6 +77,12 @@ fn scaled(n: u64, units: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rough_numbers_keep_two_digits() {
+        let shown = [950, 1000, 12_345, 99_960, 999_500, 4_560_000].map(rough_count);
+        assert_eq!(shown, ["950", "1.0k", "12k", "100k", "1.0M", "4.6M"]);
+    }
 
     #[test]
     fn numbers_keep_three_digits() {

@@ -6,7 +6,8 @@ use comfy_table::{
 use gnomon_pipeline::render::Rendered;
 use gnomon_raster::{ClientTraffic, Counters, SubmitReport, Traffic};
 
-use super::numbers::{count, milliseconds};
+use super::numbers::{count, milliseconds, rough_count};
+use super::wrap::WIDTH;
 
 /// A title, named columns, rows of text. The first column is aligned to the
 /// left; a row of a single cell is a heading. Column names may have several lines.
@@ -50,6 +51,11 @@ impl Table {
         format!("{}\n{}", self.title, self.with_headings(&table.trim_fmt()))
     }
 
+    /// Whether its lines fit a terminal.
+    fn fits(&self) -> bool {
+        self.to_text().lines().all(|l| l.chars().count() <= WIDTH)
+    }
+
     /// Puts the headings between the rows; as cells they would widen the first column.
     fn with_headings(&self, text: &str) -> String {
         let mut lines = text.lines();
@@ -91,8 +97,8 @@ struct PassRow {
     counters: Counters,
 }
 
-/// The passes of a frame; where they are too many to read, those of one kind
-/// together, such as `wedges x30`.
+/// The passes of a frame, those of one name together, such as `mips x16`; where
+/// they are too many to read, those of all lights together, such as `wedges x30`.
 fn pass_rows(done: &Rendered) -> Vec<PassRow> {
     let passes = &done.report.passes;
     let name = |label: &str| {
@@ -105,10 +111,7 @@ fn pass_rows(done: &Rendered) -> Vec<PassRow> {
     let mut rows: Vec<PassRow> = Vec::new();
     for (pass, (_, ms)) in passes.iter().zip(&done.pass_ms) {
         let name = name(&pass.label);
-        let known = rows
-            .iter_mut()
-            .find(|r| r.name == name && passes.len() > MOST_ROWS);
-        match known {
+        match rows.iter_mut().find(|r| r.name == name) {
             Some(row) => {
                 row.count += 1;
                 row.ms += ms;
@@ -183,17 +186,23 @@ fn work_row(name: &str, ms: f64, c: &Counters) -> Vec<String> {
     row
 }
 
-/// Bytes read and written, client by client, pass by pass.
+/// Bytes read and written, client by client, pass by pass; to two digits where three
+/// do not fit a terminal.
 pub(crate) fn traffic(frames: &[Named<'_>]) -> Table {
+    let table = traffic_in(frames, count);
+    if table.fits() {
+        table
+    } else {
+        traffic_in(frames, rough_count)
+    }
+}
+
+/// What writes numbers.
+type Write = fn(u64) -> String;
+
+fn traffic_in(frames: &[Named<'_>], write: Write) -> Table {
     let header = [
-        "pass",
-        "z",
-        "stencil",
-        "color",
-        "tex",
-        "vertex+index",
-        "hiz",
-        "total",
+        "pass", "z", "stencil", "color", "tex", "vertex", "hiz", "total",
     ];
     let mut table = Table::new("Bytes read/written by client, clears apart", &header);
     for frame in frames {
@@ -203,12 +212,14 @@ pub(crate) fn traffic(frames: &[Named<'_>]) -> Table {
             sum.add(&row.counters);
             table
                 .rows
-                .push(traffic_row(&row.name, &row.counters.traffic));
+                .push(traffic_row(&row.name, &row.counters.traffic, write));
         }
         let clear = clears(&frame.done.report);
-        table.rows.push(traffic_row("clears", &clear.traffic));
+        table
+            .rows
+            .push(traffic_row("clears", &clear.traffic, write));
         sum.add(&clear);
-        table.rows.push(traffic_row("total", &sum.traffic));
+        table.rows.push(traffic_row("total", &sum.traffic, write));
     }
     if table
         .rows
@@ -227,21 +238,21 @@ pub(crate) fn traffic(frames: &[Named<'_>]) -> Table {
 
 const NOTHING: &str = "-";
 
-fn traffic_row(name: &str, t: &ClientTraffic) -> Vec<String> {
+fn traffic_row(name: &str, t: &ClientTraffic, write: Write) -> Vec<String> {
     let geometry = [t.vertex, t.index];
     let clients: [&[Traffic]; 6] = [&[t.z], &[t.stencil], &t.color, &t.tex, &geometry, &[t.hiz]];
     let mut row = vec![format!("  {name}")];
-    row.extend(clients.map(both_ways));
-    row.push(count(t.total_bytes()));
+    row.extend(clients.map(|c| both_ways(c, write)));
+    row.push(write(t.total_bytes()));
     row
 }
 
-fn both_ways(traffic: &[Traffic]) -> String {
+fn both_ways(traffic: &[Traffic], write: Write) -> String {
     let read: u64 = traffic.iter().map(|t| t.read_bytes).sum();
     let written: u64 = traffic.iter().map(|t| t.write_bytes).sum();
     match (read, written) {
         (0, 0) => NOTHING.to_owned(),
-        _ => format!("{}/{}", count(read), count(written)),
+        _ => format!("{}/{}", write(read), write(written)),
     }
 }
 
@@ -291,21 +302,14 @@ mod tests {
         let mut table = Table::new(
             "t",
             &[
-                "pass",
-                "z",
-                "stencil",
-                "color",
-                "tex",
-                "vertex+index",
-                "hiz",
-                "total",
+                "pass", "z", "stencil", "color", "tex", "vertex", "hiz", "total",
             ],
         );
         let heading = "a heading, however long it is, is no cell and widens no column of numbers";
         table.rows.push(vec![heading.to_owned()]);
-        table.rows.push(traffic_row("volumes 15", &t));
+        table.rows.push(traffic_row("volumes 15", &t, count));
         table.rows.push(vec!["last".to_owned()]);
-        table.rows.push(traffic_row("total", &t));
+        table.rows.push(traffic_row("total", &t, count));
         let text = table.to_text();
         assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
         assert!(text.contains("999k/99.9k"));

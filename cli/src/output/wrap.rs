@@ -1,7 +1,7 @@
 //! Text in lines of 80 columns.
 
 /// Columns of a terminal that is not told otherwise.
-const WIDTH: usize = 80;
+pub(crate) const WIDTH: usize = 80;
 
 /// `first` and then the words of `text`, in lines of at most 80 columns; lines
 /// after the first begin with `indent` spaces.

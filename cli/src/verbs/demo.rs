@@ -1,24 +1,26 @@
 //! `gnomon demo`: the default scene, what each technique costs, and a proof
 //! that skipping and the choice of method change no bit.
 
+mod checks;
 mod errors;
+mod shots;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use gnomon_pipeline::heat;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::technique::{Params, Technique, find};
 use serde::Serialize;
 
+use checks::Checks;
 use errors::{ErrorDocument, Errors};
+use shots::{ENTRIES, REPEAT, Shot, same_bits, settings, shoot};
 
 use crate::args::{DemoArgs, OverlayKind};
 use crate::error::CliError;
 use crate::output::files::{self, Batch};
 use crate::output::html::{Figure, Report};
-use crate::output::json::{FileDocument, RenderDocument, RenderJob, worker_threads};
+use crate::output::json::{FileDocument, RenderDocument, worker_threads};
 use crate::output::progress::Progress;
 use crate::output::tables::{self, Named, Table};
 use crate::output::wrap::hanging;
@@ -26,44 +28,6 @@ use crate::output::{self, numbers, png};
 use crate::overlay;
 
 const SCENE: &str = "demo";
-/// Frames timed for each entry.
-const REPEAT: u32 = 3;
-
-/// A picture of the demo: file name, technique, settings, what it shows.
-struct Entry {
-    name: &'static str,
-    technique: &'static str,
-    settings: &'static [(&'static str, &'static str)],
-    caption: &'static str,
-}
-
-const ENTRIES: &[Entry] = &[
-    Entry {
-        name: "unshadowed",
-        technique: "unshadowed",
-        settings: &[],
-        caption: "All light everywhere: what shadows are measured against",
-    },
-    Entry {
-        name: "zpass",
-        technique: "shadow-volumes",
-        settings: &[("method", "zpass")],
-        caption: "Shadow volumes counted where they pass the depth test",
-    },
-    Entry {
-        name: "zfail",
-        technique: "shadow-volumes",
-        settings: &[("method", "zfail")],
-        caption: "Counted where they fail it: right from any point of view, and dearer",
-    },
-    Entry {
-        name: "auto",
-        technique: "shadow-volumes",
-        settings: &[("method", "auto")],
-        caption: "The cheaper of the two that is right, caster by caster",
-    },
-];
-
 /// The entry that overlays are drawn over.
 const EXPLAINED: usize = 3;
 
@@ -78,16 +42,6 @@ const OVERLAYS: &[(OverlayKind, &str)] = &[
     (OverlayKind::Traffic, "Where memory bandwidth is spent"),
 ];
 
-/// An entry, rendered with and without skipping.
-struct Shot {
-    entry: &'static Entry,
-    technique: &'static dyn Technique,
-    params: Params,
-    plain_params: Params,
-    done: Rendered,
-    plain: Rendered,
-}
-
 #[derive(Serialize)]
 struct DemoDocument {
     scene: &'static str,
@@ -98,15 +52,6 @@ struct DemoDocument {
     no_skip: Vec<RenderDocument>,
     errors: Vec<ErrorDocument>,
     files: Vec<FileDocument>,
-}
-
-/// What the demo proves about itself.
-#[derive(Clone, Copy, Serialize)]
-struct Checks {
-    /// Rendering without skipping gives the same bits.
-    skipping_is_invisible: bool,
-    /// z-pass, z-fail and their mixture give the same bits.
-    methods_agree: bool,
 }
 
 /// Runs the demo.
@@ -145,110 +90,6 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     }
     output::print_summary(&summary(args, &tables, &notes, &files, seconds), args.json)?;
     checks.verdict()
-}
-
-fn shoot(scene: &Scene, args: &DemoArgs, progress: &Progress) -> Result<Vec<Shot>, CliError> {
-    let mut shots = Vec::new();
-    for entry in ENTRIES {
-        progress.doing(format!("rendering {}", entry.name));
-        shots.push(Shot::new(scene, entry, args)?);
-        progress.step();
-    }
-    Ok(shots)
-}
-
-fn settings(args: &DemoArgs, repeat: u32) -> RenderSettings {
-    RenderSettings {
-        size: args.size,
-        gpu: args.gpu.config(),
-        repeat,
-    }
-}
-
-impl Shot {
-    fn new(scene: &Scene, entry: &'static Entry, args: &DemoArgs) -> Result<Self, CliError> {
-        let technique = find(entry.technique)?;
-        let given: Vec<(String, String)> = entry
-            .settings
-            .iter()
-            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-            .collect();
-        let params = super::parameters(technique, &given, args.gpu.no_skip)?;
-        let plain_params = super::parameters(technique, &given, true)?;
-        let mut settings = settings(args, REPEAT);
-        let done = render(scene, technique, &params, &settings)?;
-        settings.gpu.skip = false;
-        let plain = render(scene, technique, &plain_params, &settings)?;
-        Ok(Self {
-            entry,
-            technique,
-            params,
-            plain_params,
-            done,
-            plain,
-        })
-    }
-
-    fn job<'a>(&'a self, scene: &'a Scene, args: &DemoArgs, skip: bool) -> RenderJob<'a> {
-        let mut gpu = args.gpu.config();
-        gpu.skip &= skip;
-        RenderJob {
-            scene,
-            technique: self.technique,
-            params: if skip {
-                &self.params
-            } else {
-                &self.plain_params
-            },
-            gpu,
-            repeat: REPEAT,
-        }
-    }
-}
-
-/// Whether two frames are equal in every bit that they leave behind.
-fn same_bits(a: &Rendered, b: &Rendered) -> bool {
-    let bits = |v: &[f32]| v.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
-    a.srgb == b.srgb
-        && a.stencil == b.stencil
-        && bits(&a.depth) == bits(&b.depth)
-        && bits(&a.visibility) == bits(&b.visibility)
-}
-
-impl Checks {
-    fn of(shots: &[Shot]) -> Self {
-        let volumes: Vec<&Shot> = shots
-            .iter()
-            .filter(|s| s.entry.technique == "shadow-volumes")
-            .collect();
-        Self {
-            skipping_is_invisible: shots.iter().all(|s| same_bits(&s.done, &s.plain)),
-            methods_agree: volumes
-                .windows(2)
-                .all(|w| same_bits(&w[0].done, &w[1].done)),
-        }
-    }
-
-    fn lines(self) -> [String; 2] {
-        let verdict = |fine: bool| if fine { "yes" } else { "NO" };
-        [
-            format!(
-                "same bits without skipping: {}",
-                verdict(self.skipping_is_invisible)
-            ),
-            format!(
-                "z-pass, z-fail and auto agree to the bit: {}",
-                verdict(self.methods_agree)
-            ),
-        ]
-    }
-
-    fn verdict(self) -> Result<(), CliError> {
-        if self.skipping_is_invisible && self.methods_agree {
-            return Ok(());
-        }
-        Err(CliError::Check(self.lines().join("; ")))
-    }
 }
 
 /// The demo's products on their way to the folder.

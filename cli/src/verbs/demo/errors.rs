@@ -7,7 +7,7 @@ use gnomon_pipeline::render::RenderSettings;
 use gnomon_pipeline::scene::Scene;
 use serde::Serialize;
 
-use super::{Shot, same_bits};
+use super::shots::{Shot, same_bits};
 use crate::error::CliError;
 use crate::output::numbers::error;
 use crate::output::tables::Table;

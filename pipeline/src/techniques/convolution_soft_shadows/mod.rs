@@ -200,7 +200,7 @@ impl Shadows<'_> {
             list.extend(self.view_passes(light, fitted, &geometry, label, list.is_empty()));
         }
         if list.is_empty() {
-            list.push(self.shadow_pass(label("convolution"), true, Vec::new()));
+            list.push(self.shadow_pass(label("look-up"), true, Vec::new()));
         }
         said.into_notes(0.0, label, notes);
         list
@@ -239,7 +239,7 @@ impl Shadows<'_> {
         let (passes, images) = prefilter.passes(label);
         list.extend(passes);
         let draw = self.shadow_draw(self.shader(light, fitted), images);
-        list.push(self.shadow_pass(label("convolution"), first, vec![draw]));
+        list.push(self.shadow_pass(label("look-up"), first, vec![draw]));
         list
     }
 
@@ -261,7 +261,7 @@ impl Shadows<'_> {
     /// At every pixel that shows a surface.
     fn shadow_draw(&self, shader: FragmentStage, images: [TextureId; 3]) -> Draw {
         let pipeline = RenderPipeline {
-            label: "convolution".to_owned(),
+            label: "look-up".to_owned(),
             vertex: FullScreen.stage(),
             fragment: Some(shader),
             primitive: PrimitiveState::default(),

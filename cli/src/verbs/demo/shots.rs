@@ -1,0 +1,157 @@
+//! The frames of the demo: which, and how they are rendered.
+
+use gnomon_pipeline::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::scene::Scene;
+use gnomon_pipeline::technique::{Params, Technique, find};
+
+use crate::args::DemoArgs;
+use crate::error::CliError;
+use crate::output::json::RenderJob;
+use crate::output::progress::Progress;
+
+/// Frames timed for each entry.
+pub(super) const REPEAT: u32 = 3;
+
+/// A picture of the demo: file name, technique, settings, what it shows.
+pub(super) struct Entry {
+    pub(super) name: &'static str,
+    pub(super) technique: &'static str,
+    pub(super) settings: &'static [(&'static str, &'static str)],
+    pub(super) caption: &'static str,
+}
+
+pub(super) const ENTRIES: &[Entry] = &[
+    Entry {
+        name: "unshadowed",
+        technique: "unshadowed",
+        settings: &[],
+        caption: "All light everywhere: what shadows are measured against",
+    },
+    Entry {
+        name: "zpass",
+        technique: "shadow-volumes",
+        settings: &[("method", "zpass")],
+        caption: "Shadow volumes counted where they pass the depth test",
+    },
+    Entry {
+        name: "zfail",
+        technique: "shadow-volumes",
+        settings: &[("method", "zfail")],
+        caption: "Counted where they fail it: right from any point of view, and dearer",
+    },
+    Entry {
+        name: "auto",
+        technique: "shadow-volumes",
+        settings: &[("method", "auto")],
+        caption: "The cheaper of the two that is right, caster by caster",
+    },
+    Entry {
+        name: "soft",
+        technique: "soft-shadow-volumes",
+        settings: &[("horizon", "on")],
+        caption: "The whole light seen past every silhouette edge: soft shadow volumes",
+    },
+    Entry {
+        name: "csm",
+        technique: "convolution-soft-shadows",
+        settings: &[],
+        caption: "Soft shadows from one shadow map, filtered as convolutions",
+    },
+    Entry {
+        name: "pcss",
+        technique: "pcss",
+        settings: &[],
+        caption: "Soft shadows from one shadow map, by searching and filtering its texels",
+    },
+];
+
+/// An entry, rendered with and without skipping.
+pub(super) struct Shot {
+    pub(super) entry: &'static Entry,
+    pub(super) technique: &'static dyn Technique,
+    pub(super) params: Params,
+    pub(super) plain_params: Params,
+    pub(super) done: Rendered,
+    pub(super) plain: Rendered,
+}
+
+pub(super) fn shoot(
+    scene: &Scene,
+    args: &DemoArgs,
+    progress: &Progress,
+) -> Result<Vec<Shot>, CliError> {
+    let mut shots = Vec::new();
+    for entry in ENTRIES {
+        progress.doing(format!("rendering {}", entry.name));
+        shots.push(Shot::new(scene, entry, args)?);
+        progress.step();
+    }
+    Ok(shots)
+}
+
+pub(super) fn settings(args: &DemoArgs, repeat: u32) -> RenderSettings {
+    RenderSettings {
+        size: args.size,
+        gpu: args.gpu.config(),
+        repeat,
+    }
+}
+
+impl Shot {
+    pub(super) fn new(
+        scene: &Scene,
+        entry: &'static Entry,
+        args: &DemoArgs,
+    ) -> Result<Self, CliError> {
+        let technique = find(entry.technique)?;
+        let given: Vec<(String, String)> = entry
+            .settings
+            .iter()
+            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+            .collect();
+        let params = crate::verbs::parameters(technique, &given, args.gpu.no_skip)?;
+        let plain_params = crate::verbs::parameters(technique, &given, true)?;
+        let mut settings = settings(args, REPEAT);
+        let done = render(scene, technique, &params, &settings)?;
+        settings.gpu.skip = false;
+        let plain = render(scene, technique, &plain_params, &settings)?;
+        Ok(Self {
+            entry,
+            technique,
+            params,
+            plain_params,
+            done,
+            plain,
+        })
+    }
+
+    pub(super) fn job<'a>(
+        &'a self,
+        scene: &'a Scene,
+        args: &DemoArgs,
+        skip: bool,
+    ) -> RenderJob<'a> {
+        let mut gpu = args.gpu.config();
+        gpu.skip &= skip;
+        RenderJob {
+            scene,
+            technique: self.technique,
+            params: if skip {
+                &self.params
+            } else {
+                &self.plain_params
+            },
+            gpu,
+            repeat: REPEAT,
+        }
+    }
+}
+
+/// Whether two frames are equal in every bit that they leave behind.
+pub(super) fn same_bits(a: &Rendered, b: &Rendered) -> bool {
+    let bits = |v: &[f32]| v.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
+    a.srgb == b.srgb
+        && a.stencil == b.stencil
+        && bits(&a.depth) == bits(&b.depth)
+        && bits(&a.visibility) == bits(&b.visibility)
+}

@@ -16,11 +16,31 @@ use crate::observer::AccessObserver;
 pub(crate) fn submit(
     gpu: &mut Gpu,
     list: &CommandList,
-    mut observer: Option<&mut dyn AccessObserver>,
+    observer: Option<&mut dyn AccessObserver>,
 ) -> Result<SubmitReport, Error> {
     list.passes
         .iter()
         .try_for_each(|p| validate::render_pass(gpu, p))?;
+    // One visit to the pool for all passes, unless an observer has to stay here.
+    match (gpu.pool.take(), observer) {
+        (Some(pool), None) => {
+            let report = pool.install(|| passes(gpu, list, None));
+            gpu.pool = Some(pool);
+            Ok(report)
+        }
+        (pool, observer) => {
+            gpu.pool = pool;
+            Ok(passes(gpu, list, observer))
+        }
+    }
+}
+
+/// Executes validated passes in order.
+fn passes(
+    gpu: &mut Gpu,
+    list: &CommandList,
+    mut observer: Option<&mut dyn AccessObserver>,
+) -> SubmitReport {
     let mut report = SubmitReport::default();
     for (number, pass) in list.passes.iter().enumerate() {
         let start = Instant::now();
@@ -32,7 +52,7 @@ pub(crate) fn submit(
             observer.render_pass(number, &pass.label, &accesses);
         }
     }
-    Ok(report)
+    report
 }
 
 /// A pool of `n` workers; 0 for one per core.

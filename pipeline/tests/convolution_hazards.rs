@@ -15,7 +15,7 @@ use gnomon_shaders::convolution::look_up::{BoxEdges, FloatTables, Images, Mipmap
 use gnomon_shaders::convolution::prefilter::SumStep;
 use gnomon_shaders::convolution::visibility::{ConvolutionShadow, Sharpening};
 use gnomon_shaders::convolution::{Atlas, Encoding};
-use gnomon_shaders::light_view::{DepthRange, LightMapping, ViewRegion};
+use gnomon_shaders::light_view::{DepthRange, LightMapping, Projection, ViewRegion};
 use gnomon_shaders::transform::FullScreen;
 
 const SIDE: u32 = 16;
@@ -143,6 +143,7 @@ where
         mapping: LightMapping {
             centre: [0.0; 3],
             axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            projection: Projection::Perspective,
             scale: 0.5,
             offset: [0.5; 2],
             range: DepthRange {
@@ -232,6 +233,7 @@ const MIPMAPS: Mipmaps = Mipmaps {
 const TABLES: FloatTables = FloatTables {
     side: SIDE,
     edges: BoxEdges::Exact,
+    centred: false,
 };
 
 #[test]

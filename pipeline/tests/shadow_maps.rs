@@ -5,11 +5,11 @@ mod map_support;
 
 use glam::DVec3;
 use gnomon_pipeline::light::{HardLight, LightShape};
-use gnomon_pipeline::mesh::Shading;
+use gnomon_pipeline::mesh::{Mesh, Shading};
 use gnomon_pipeline::metrics::visibility::VisibilityError;
 use gnomon_pipeline::oracle::hard::HardOracle;
 use gnomon_pipeline::render::Rendered;
-use gnomon_pipeline::scene::{Material, Object, builtin};
+use gnomon_pipeline::scene::{Material, Object, Scene, builtin};
 use gnomon_pipeline::shape;
 use map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
 
@@ -83,6 +83,121 @@ fn one_map_is_the_hard_shadow_away_from_edges() {
         // What the bias alone changes: contacts, and the unlit side of casters.
         assert!(as_in_truth * 1000 >= judged * 995, "{name}");
     }
+}
+
+/// Whether a shadow map of parallel rays that is right in every texel says so; as
+/// [`mapped`].
+fn mapped_along(
+    oracle: &HardOracle,
+    towards: DVec3,
+    point: DVec3,
+    bias: f64,
+    texel: f64,
+) -> Option<bool> {
+    let towards = towards.normalize();
+    let right = towards.any_orthonormal_vector();
+    let down = towards.cross(right);
+    let blocked = |i: i32, k: i32| {
+        let off = right * f64::from(i) + down * f64::from(k);
+        oracle.shadow_count_at(point + off * (0.25 * texel) + towards * bias) > 0
+    };
+    let centre = blocked(0, 0);
+    let alike = (-3..=3).all(|i| (-3..=3).all(|k| blocked(i, k) == centre));
+    alike.then_some(centre)
+}
+
+/// Directional lights have orthographic views: the hard shadow of the oracle, from
+/// above, at a slant, and near the horizon; of one map, of taps, and of N maps.
+#[test]
+fn maps_of_directional_lights_are_the_hard_shadow() {
+    for (name, towards, far) in [
+        ("cylinder", DVec3::new(0.5, 1.0, -0.7), 0.0),
+        ("creature", DVec3::new(0.6, 1.0, 0.3), 0.0),
+        ("columns", DVec3::new(-0.5, 1.5, 0.8), 0.0),
+        ("spheres", DVec3::new(2.0, 0.7, -1.0), 0.0),
+        ("creature", DVec3::new(0.6, 1.0, 0.3), 4096.0),
+    ] {
+        let mut scene = scene(name);
+        if far > 0.0 {
+            scene = moved(&scene, DVec3::new(far, -far, far));
+        }
+        scene.lights[0].shape = LightShape::Directional { towards };
+        let oracle = HardOracle::new(&scene, HardLight::Directional(towards));
+        let rays = scene.camera.eye_rays(SIZE[0], SIZE[1]);
+        let plain = ["map-size=1024", "slope-bias=0", "bias=0.02"];
+        let hard = by("shadow-map", &scene, &plain);
+        let many = by("shadow-maps-n", &scene, &[&plain[..], &["maps=4"]].concat());
+        assert_eq!(figure(&hard, "views"), 1.0);
+        // A light without width: kernels of a texel.
+        let soft = by("pcss", &scene, &[&plain[..], &["sampling=all"]].concat());
+        let taps = by("pcf", &scene, &[&plain[..], &["taps=2"]].concat());
+        let texel = figure(&hard, "texel");
+        let (mut judged, mut surfaces, mut dark, mut as_in_truth) = (0, 0, 0, 0);
+        for (k, seen) in hard.visibility.iter().enumerate() {
+            let place = [k as u32 % SIZE[0], k as u32 / SIZE[0]].map(|c| f64::from(c) + 0.5);
+            let sample = oracle.sample(&rays, place[0], place[1]);
+            let Some(hit) = sample.hit.filter(|_| !seen.is_nan()) else {
+                continue;
+            };
+            surfaces += 1;
+            let point = rays.origin + rays.direction(place[0], place[1]) * hit.depth;
+            let Some(blocked) = mapped_along(&oracle, towards, point, 0.02, texel) else {
+                continue;
+            };
+            judged += 1;
+            dark += usize::from(blocked);
+            as_in_truth += usize::from(blocked == (sample.shadow_count > 0));
+            let expected = if blocked { 0.0 } else { 1.0 };
+            assert_eq!(*seen, expected, "{name} at {place:?}");
+            assert_eq!(many.visibility[k], expected, "{name} at {place:?}");
+            for picture in [&soft, &taps] {
+                assert!(
+                    (picture.visibility[k] - expected).abs() < 0.8,
+                    "{name} at {place:?}"
+                );
+            }
+        }
+        println!("{name}: {judged} of {surfaces} judged, {dark} dark, {as_in_truth} as in truth");
+        assert!(judged * 10 > surfaces * 8 && dark > 100, "{name}");
+        assert!(as_in_truth * 1000 >= judged * 990, "{name}");
+    }
+}
+
+/// The scene elsewhere.
+fn moved(scene: &Scene, by: DVec3) -> Scene {
+    let mut moved = scene.clone();
+    moved.camera.eye += by;
+    moved.camera.target += by;
+    for object in &mut moved.objects {
+        let mesh = &object.mesh;
+        let place = |i: u32| (mesh.position(i) + by).to_array().map(|c| c as f32);
+        let positions = (0..mesh.positions().len() as u32).map(place).collect();
+        let mesh = Mesh::new(positions, mesh.triangles().to_vec(), Shading::Flat);
+        object.mesh = std::sync::Arc::new(mesh.unwrap());
+    }
+    moved
+}
+
+/// What is left out of an orthographic view covers no texel, and no view is where no
+/// shadow can fall.
+#[test]
+fn directional_views_skip_and_end() {
+    let mut scene = scene("columns");
+    let towards = DVec3::new(-0.5, 1.5, 0.8);
+    scene.lights[0].shape = LightShape::Directional { towards };
+    for technique in ["shadow-map", "pcf", "pcss"] {
+        let of = |set: &str| by(technique, &scene, &[set]).visibility_hash();
+        assert_eq!(of("skip=on"), of("skip=off"), "{technique}");
+        assert_ne!(of("fit=receivers"), of("map-size=64"));
+    }
+    // From below nothing is between the light and what is seen but the floor.
+    let mut below = scene.clone();
+    let towards = DVec3::NEG_Y;
+    below.lights[0].shape = LightShape::Directional { towards };
+    below.objects.retain(|o| !o.casts);
+    let picture = by("shadow-map", &below, &[]);
+    assert_eq!(figure(&picture, "views"), 0.0);
+    assert!(picture.visibility.iter().all(|v| v.is_nan() || *v == 1.0));
 }
 
 /// T: what is fetched, exactly.
@@ -220,11 +335,11 @@ fn bad_parameters_and_lights_are_refused() {
     assert!(message("pcss", "samples=15").contains("square numbers"));
     assert!(message("shadow-maps-n", "maps=2000").contains("square numbers"));
     let mut sun = scene.clone();
-    let towards = DVec3::Y;
+    let towards = DVec3::ZERO;
     sun.lights[0].shape = LightShape::Directional { towards };
     for name in ["shadow-map", "pcf", "pcss", "shadow-maps-n"] {
         let message = sized(name, &sun, &[], SIZE).unwrap_err();
-        assert!(message.contains("directional"), "{message}");
+        assert!(message.contains("direction is"), "{message}");
     }
 }
 

@@ -58,7 +58,7 @@ stages!(FragmentStage:
 stages!(FragmentStage:
     convolution::basis::BasisImages, convolution::basis::DepthImage,
     convolution::prefilter::Halve, convolution::prefilter::CopyLevel,
-    convolution::prefilter::SumStep,
+    convolution::prefilter::LessMean, convolution::prefilter::SumStep,
     convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>,
     convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>,
     convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>);

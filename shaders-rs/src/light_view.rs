@@ -45,6 +45,15 @@ impl DepthRange {
     }
 }
 
+/// How a view looks at the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Projection {
+    /// From a point; places in the picture are tangents (x/z, y/z).
+    Perspective,
+    /// Along one direction, for directional lights; places are lengths (x, y).
+    Orthographic,
+}
+
 /// Scaled depth in red of attachment 0, limited to 0..=1. Varyings are those of
 /// [`crate::transform::Facets`], distances from the plane being those of a
 /// reference point.
@@ -56,8 +65,11 @@ impl DepthRange {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarDepth {
     /// Rays through texels, each one long along the view's axis. They start at
-    /// `eye`, the light's centre relative to the reference point.
+    /// `eye`, the light's centre relative to the reference point; orthographic ones
+    /// all go along `first` and start at `eye + x right + y down`.
     pub rays: PixelRays,
+    /// Which of both.
+    pub projection: Projection,
     /// How depth is stored.
     pub range: DepthRange,
     /// Texels by which a facet's slope pushes it away from the light; 0: not at all.
@@ -71,26 +83,43 @@ impl FragmentShader for PlanarDepth {
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let (x, y) = (f.x(), f.y());
         let rays = &self.rays;
+        // From the corner of the picture to the texel.
+        let across = each3(
+            #[inline(always)]
+            |i| x * rays.right[i] + y * rays.down[i],
+        );
+        let perspective = self.projection == Projection::Perspective;
         let direction = each3(
             #[inline(always)]
-            |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
+            |i| match perspective {
+                true => across[i] + rays.first[i],
+                false => F32::splat(l, rays.first[i]),
+            },
+        );
+        let start = each3(
+            #[inline(always)]
+            |i| match perspective {
+                true => F32::splat(l, rays.eye[i]),
+                false => across[i] + rays.eye[i],
+            },
         );
         let normal = each3(
             #[inline(always)]
             |i| f.varying(3 + i),
         );
-        let moved = dot3(
-            normal,
-            each3(
-                #[inline(always)]
-                |i| F32::splat(l, rays.eye[i]),
-            ),
-        );
+        let moved = dot3(normal, start);
         let slope = dot3(normal, direction);
         let steep = slope.abs().gt(length(direction) * EDGE_ON);
-        let distance = steep.select_f32((f.varying(6) - moved) / slope, f.w());
+        let (interpolated, widening) = match perspective {
+            true => (f.w(), None),
+            false => (self.range.distance(f.depth()), Some(F32::splat(l, 1.0))),
+        };
+        let distance = steep.select_f32((f.varying(6) - moved) / slope, interpolated);
         let distance = match self.slope > 0.0 {
-            true => distance + self.pushed(l, normal, distance / slope.abs()),
+            true => {
+                let step = widening.unwrap_or(distance) / slope.abs();
+                distance + self.pushed(l, normal, step)
+            }
             false => distance,
         };
         let depth = self.range.scaled(distance).clamp(0.0, 1.0);
@@ -136,7 +165,9 @@ pub struct LightMapping {
     pub centre: [f32; 3],
     /// Unit vectors to the right, downwards and along the view's axis.
     pub axes: [[f32; 3]; 3],
-    /// Factor from tangents (x/z, y/z) to (u, v).
+    /// What places in the picture are.
+    pub projection: Projection,
+    /// Factor from places, tangents or lengths, to (u, v).
     pub scale: f32,
     /// Added to the product.
     pub offset: [f32; 2],
@@ -183,7 +214,10 @@ impl LightMapping {
         let place = [x, y];
         let uv = each2(
             #[inline(always)]
-            |k| place[k] / z * self.scale + self.offset[k],
+            |k| match self.projection {
+                Projection::Perspective => place[k] / z * self.scale + self.offset[k],
+                Projection::Orthographic => place[k] * self.scale + self.offset[k],
+            },
         );
         InLightView {
             uv,

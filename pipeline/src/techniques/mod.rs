@@ -4,6 +4,7 @@ mod casters;
 mod convolution_soft_shadows;
 mod given_visibility;
 mod light_view;
+mod lit_tiles;
 mod mapped;
 mod mixed_lights;
 mod near_pyramid;

@@ -47,6 +47,11 @@ impl View {
         &self.camera
     }
 
+    /// Width and height of the picture.
+    pub(super) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// The eye relative to the origin.
     pub(super) fn eye(&self) -> DVec3 {
         self.relative(self.camera.eye)

@@ -242,9 +242,32 @@ pub struct FloatTables {
     pub side: u32,
     /// Where edges are.
     pub edges: BoxEdges,
+    /// Whether the tables are of [`super::prefilter::LessMean`]: a fifth look-up, of
+    /// the mean.
+    pub centred: bool,
 }
 
 impl FloatTables {
+    /// What was taken off the texels of a tile.
+    #[inline(always)]
+    fn taken_off<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        images: &Images,
+        tile: usize,
+    ) -> [F32<L>; 4] {
+        let factor = super::prefilter::mean_factor(self.side);
+        let [column, row] = images.atlas.cell(tile).map(|c| I32::splat(l, c as i32));
+        let level = self.side.trailing_zeros();
+        let at = [column, row];
+        let mean = super::prefilter::texel_at(l, f, images.slot, at, level);
+        each4(
+            #[inline(always)]
+            |i| mean[i] * factor,
+        )
+    }
+
     #[inline(always)]
     fn corner<L: Lanes>(
         &self,
@@ -295,12 +318,20 @@ impl Prefiltered for FloatTables {
             self.corner(l, f, images, tile, [x0, y1]),
             self.corner(l, f, images, tile, [x1, y1]),
         ];
+        let means = each4(
+            #[inline(always)]
+            |i| ((d[i] - c[i]) - (b[i] - a[i])) * window.per_texel,
+        );
+        if !self.centred {
+            return each4(
+                #[inline(always)]
+                |i| images.encoding.read(means[i]),
+            );
+        }
+        let taken = self.taken_off(l, f, images, tile);
         each4(
             #[inline(always)]
-            |i| {
-                let sum = (d[i] - c[i]) - (b[i] - a[i]);
-                images.encoding.read(sum * window.per_texel)
-            },
+            |i| images.encoding.read(means[i] + taken[i]),
         )
     }
 

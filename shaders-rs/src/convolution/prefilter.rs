@@ -15,7 +15,7 @@ pub const MAX_TEXTURES: usize = 4;
 
 /// A texel of a level, in a function of its own for all shaders.
 #[inline(always)]
-fn texel_at<L: Lanes>(
+pub(super) fn texel_at<L: Lanes>(
     l: L,
     f: &mut Fragment<'_, L>,
     slot: usize,
@@ -84,6 +84,54 @@ impl FragmentShader for CopyLevel {
         for slot in 0..self.textures {
             let texel = texel_at(l, f, slot, at, self.mip);
             f.set_color(slot, texel);
+        }
+    }
+}
+
+/// Texels less the mean of their tile, for tables that lose less to rounding: sums of
+/// what is left stay near 0. The first column and row are the zeros of exclusive
+/// tables and stay so.
+///
+/// The mean is in the last level of the chain of the textures that are read; see
+/// [`mean_factor`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LessMean {
+    /// Textures in slots from 0, attachments likewise.
+    pub textures: usize,
+    /// Texels along a side of a tile, a power of two.
+    pub side: u32,
+}
+
+/// What the last level of an exclusive table's chain is multiplied by: its zeros are
+/// no texels.
+#[must_use]
+pub(super) fn mean_factor(side: u32) -> f32 {
+    let share = side as f32 / (side - 1).max(1) as f32;
+    share * share
+}
+
+impl FragmentShader for LessMean {
+    fn outputs(&self) -> FragmentOutputs {
+        reads(self.textures)
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let level = self.side.trailing_zeros();
+        let factor = mean_factor(self.side);
+        let at = [f.column(), f.row()];
+        let last = I32::splat(l, self.side as i32 - 1);
+        let zero = I32::splat(l, 0);
+        let texel = (at[0] & last).gt(zero) & (at[1] & last).gt(zero);
+        let cell = [at[0] >> level, at[1] >> level];
+        for slot in 0..self.textures {
+            let value = texel_at(l, f, slot, at, 0);
+            let mean = texel_at(l, f, slot, cell, level);
+            let rest = each4(
+                #[inline(always)]
+                |i| texel.select_f32(value[i] - mean[i] * factor, F32::splat(l, 0.0)),
+            );
+            f.set_color(slot, rest);
         }
     }
 }

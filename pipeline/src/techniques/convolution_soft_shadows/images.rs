@@ -39,6 +39,17 @@ impl Group {
             let beside = TextureDescriptor::d2(&format!("{label} aside"), format, width, height);
             let (main, beside) = match filter {
                 Filter::Sat | Filter::SatU32 => (main, beside),
+                Filter::SatMean => (
+                    // The means are made level by level, to and fro.
+                    TextureDescriptor {
+                        mip_levels: levels + 1,
+                        ..main
+                    },
+                    TextureDescriptor {
+                        mip_levels: levels + 1,
+                        ..beside
+                    },
+                ),
                 Filter::Mip => (
                     TextureDescriptor {
                         mip_levels: levels + 1,
@@ -126,7 +137,7 @@ fn formats(settings: &Settings) -> [(Format, Encoding); 3] {
             plain(Format::Rgba16Float),
             plain(Format::R32Float),
         ],
-        Filter::Mip | Filter::Sat => [
+        Filter::Mip | Filter::Sat | Filter::SatMean => [
             plain(Format::Rgba32Float),
             plain(Format::Rgba32Float),
             plain(Format::R32Float),
@@ -159,7 +170,7 @@ fn atlas(technique: &'static str, side: u32, tiles: u32) -> Result<Atlas, Techni
 pub(super) fn filtered(texture: TextureId, filter: Filter) -> TextureBinding {
     let sampler = match filter {
         Filter::Mip => Sampler::trilinear(),
-        Filter::Sat => Sampler::bilinear(),
+        Filter::Sat | Filter::SatMean => Sampler::bilinear(),
         Filter::SatU32 => Sampler::default(),
     };
     TextureBinding { texture, sampler }

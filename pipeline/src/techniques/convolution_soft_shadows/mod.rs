@@ -45,6 +45,7 @@ use self::needed::Needed;
 use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
+use super::lit_tiles::{LitTiles, ReceiverTiles};
 use super::mapped::{self, Notes, Said};
 use super::passes::{self, LitTest, SceneDraws, Targets};
 use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
@@ -83,6 +84,7 @@ impl Technique for ConvolutionSoftShadows {
             settings::ITERATE,
             settings::THRESHOLD,
             settings::MIP_SHARPER,
+            settings::PROBES,
             passes::LIGHT,
             settings::SKIP,
             passes::SHADING,
@@ -122,10 +124,14 @@ impl Technique for ConvolutionSoftShadows {
         ];
         let mut notes = Notes::default();
         let visibility = VisibilityTexture::red(shadows.visibility);
+        let receivers = ReceiverTiles::new(scene, &shadows.around, &shadows.draws.view);
         for &light in lights.iter().rev() {
             let label = |what: &str| passes::label(what, light, &lights);
             let viewed = ViewedLight::new(self.name(), &scene.lights[light], light)?;
-            list.extend(shadows.light_passes(&viewed, &label, &mut notes));
+            // Visibility of the first is an output and needed everywhere.
+            let skip = shadows.settings.skip && light != lights[0];
+            let tiles = skip.then(|| receivers.lit_by(&scene.lights[light]));
+            list.extend(shadows.light_passes(&viewed, tiles.as_ref(), &label, &mut notes));
             notes
                 .warnings
                 .extend(square_instead(&scene.lights[light], light));
@@ -183,21 +189,31 @@ impl Shadows<'_> {
     fn light_passes(
         &self,
         light: &ViewedLight,
+        tiles: Option<&LitTiles>,
         label: &dyn Fn(&str) -> String,
         notes: &mut Notes,
     ) -> Vec<RenderPass> {
+        if let Some(tiles) = tiles {
+            notes.skipped(tiles, label);
+            if tiles.is_empty() {
+                return vec![self.shadow_pass(label("look-up"), true, Vec::new())];
+            }
+        }
         let Settings { views, fitting, .. } = self.settings;
         let views = views_of(light, &self.around, views, &fitting);
         let geometry = CasterGeometry::new(
             self.scene,
             &self.around,
             &self.draws.view,
-            light.frame.centre,
+            light.reference(&self.around),
         );
         let (mut list, mut said) = (Vec::new(), Said::default());
         for fitted in &views {
             said.add(fitted, self.offset(fitted), self.settings.side);
-            list.extend(self.view_passes(light, fitted, &geometry, label, list.is_empty()));
+            let (passes, draw) = self.view_passes(light, fitted, tiles, &geometry, label);
+            let first = list.is_empty();
+            list.extend(passes);
+            list.push(self.shadow_pass(label("look-up"), first, vec![draw]));
         }
         if list.is_empty() {
             list.push(self.shadow_pass(label("look-up"), true, Vec::new()));
@@ -213,14 +229,15 @@ impl Shadows<'_> {
         series.offset() / series.reach() * (far - near)
     }
 
+    /// A view's picture and what is made of it, and the draw that looks it up.
     fn view_passes(
         &self,
         light: &ViewedLight,
         fitted: &Fitted,
+        tiles: Option<&LitTiles>,
         geometry: &CasterGeometry,
         label: &dyn Fn(&str) -> String,
-        first: bool,
-    ) -> Vec<RenderPass> {
+    ) -> (Vec<RenderPass>, Draw) {
         let settings = &self.settings;
         let reads = fitted.reads(&self.around, light.extent);
         let needed = match reads.filter(|_| settings.skip) {
@@ -238,9 +255,8 @@ impl Shadows<'_> {
         };
         let (passes, images) = prefilter.passes(label);
         list.extend(passes);
-        let draw = self.shadow_draw(self.shader(light, fitted), images);
-        list.push(self.shadow_pass(label("look-up"), first, vec![draw]));
-        list
+        let draw = self.shadow_draw(self.shader(light, fitted), tiles, images);
+        (list, draw)
     }
 
     /// Visibility where something is in the light's way; 1 elsewhere.
@@ -259,7 +275,12 @@ impl Shadows<'_> {
     }
 
     /// At every pixel that shows a surface.
-    fn shadow_draw(&self, shader: FragmentStage, images: [TextureId; 3]) -> Draw {
+    fn shadow_draw(
+        &self,
+        shader: FragmentStage,
+        tiles: Option<&LitTiles>,
+        images: [TextureId; 3],
+    ) -> Draw {
         let pipeline = RenderPipeline {
             label: "look-up".to_owned(),
             vertex: FullScreen.stage(),
@@ -283,7 +304,10 @@ impl Shadows<'_> {
                 min_depth: 1.0,
                 ..Viewport::full(width, height)
             }),
-            ..full_screen(pipeline, textures)
+            ..match tiles {
+                Some(tiles) => tiles.draw(pipeline, textures),
+                None => full_screen(pipeline, textures),
+            }
         }
     }
 
@@ -298,11 +322,15 @@ impl Shadows<'_> {
         let side = settings.side;
         match settings.filter {
             Filter::Mip => {
-                let mipmaps = mipmaps(half, side, settings.sharper);
+                let mipmaps = mipmaps(half, settings);
                 self.with(fitted, half, mipmaps).stage()
             }
-            Filter::Sat => {
-                let tables = FloatTables { side, edges };
+            Filter::Sat | Filter::SatMean => {
+                let tables = FloatTables {
+                    side,
+                    edges,
+                    centred: settings.filter == Filter::SatMean,
+                };
                 self.with(fitted, half, tables).stage()
             }
             Filter::SatU32 => {
@@ -339,7 +367,7 @@ impl Shadows<'_> {
 }
 
 /// As many squares along the longer side as the light is longer than wide.
-fn mipmaps(half: [f64; 2], side: u32, sharper: f64) -> Mipmaps {
+fn mipmaps(half: [f64; 2], settings: &Settings) -> Mipmaps {
     /// What hardware filters at most.
     const MOST: f64 = 16.0;
     let along = if half[0] < half[1] { 1 } else { 0 };
@@ -350,9 +378,9 @@ fn mipmaps(half: [f64; 2], side: u32, sharper: f64) -> Mipmaps {
         1.0
     };
     Mipmaps {
-        side,
-        lod_bias: -sharper as f32,
-        probes: probes as u32,
+        side: settings.side,
+        lod_bias: -settings.sharper as f32,
+        probes: settings.probes.unwrap_or(probes as u32),
         along,
     }
 }

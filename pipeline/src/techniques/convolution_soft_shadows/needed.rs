@@ -13,7 +13,8 @@ pub(super) struct Texels {
 }
 
 impl Texels {
-    fn all(side: u32) -> Self {
+    /// Of the whole tile.
+    pub(super) fn all(side: u32) -> Self {
         Self {
             begin: [0; 2],
             end: [side; 2],
@@ -68,7 +69,7 @@ impl Needed {
     pub(super) fn of(reads: &Reads, side: u32, filter: Filter) -> Self {
         match filter {
             Filter::Mip => Self::of_mips(reads, side),
-            Filter::Sat | Filter::SatU32 => Self {
+            Filter::Sat | Filter::SatMean | Filter::SatU32 => Self {
                 levels: vec![Texels {
                     begin: [0; 2],
                     ..Texels::read(reads, side)

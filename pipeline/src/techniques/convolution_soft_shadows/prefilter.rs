@@ -11,7 +11,7 @@ use gnomon_raster::{
     ColorAttachment, Draw, LoadOp, RenderPass, RenderPipeline, StoreOp, Subresource, TextureId,
 };
 use gnomon_shaders::convolution::basis::{BasisImages, DepthImage, Source};
-use gnomon_shaders::convolution::prefilter::{CopyLevel, Halve, SumStep};
+use gnomon_shaders::convolution::prefilter::{CopyLevel, Halve, LessMean, SumStep};
 use gnomon_shaders::transform::FullScreen;
 
 use super::super::visibility::{binding, full_screen};
@@ -47,7 +47,9 @@ impl Prefilter<'_> {
         for group in [&self.images.series, &self.images.depth] {
             let (more, textures) = match self.settings.filter {
                 Filter::Mip => self.mip_passes(group, &label("mips")),
-                Filter::Sat | Filter::SatU32 => self.table_passes(group, &label("tables")),
+                Filter::Sat | Filter::SatMean | Filter::SatU32 => {
+                    self.table_passes(group, &label("tables"))
+                }
             };
             passes.extend(more);
             made.extend(textures);
@@ -57,6 +59,10 @@ impl Prefilter<'_> {
 
     fn exclusive(&self) -> bool {
         self.settings.filter != Filter::Mip
+    }
+
+    fn centred(&self) -> bool {
+        self.settings.filter == Filter::SatMean
     }
 
     fn integer(&self) -> bool {
@@ -100,7 +106,10 @@ impl Prefilter<'_> {
             };
             shader.stage()
         };
-        let texels = self.needed.level(0);
+        let texels = match self.centred() {
+            true => Texels::all(self.settings.side),
+            false => self.needed.level(0),
+        };
         vec![
             pass(label, series, &read, &mains(series, 0), texels, basis),
             pass(label, depth, &read, &mains(depth, 0), texels, depth_image),
@@ -145,6 +154,15 @@ impl Prefilter<'_> {
         let texels = self.needed.level(0);
         let mut passes = Vec::new();
         let (mut from, mut to) = (mains(group, 0), asides(group, 0));
+        if self.centred() {
+            passes = mean_passes(group, label);
+            let shader = LessMean {
+                textures: group.textures.len(),
+                side: group.atlas.side,
+            };
+            passes.push(pass(label, group, &from, &to, texels, |_| shader.stage()));
+            std::mem::swap(&mut from, &mut to);
+        }
         for axis in 0..2 {
             // Entries beyond the last that is read need no sums.
             let end = texels.end[axis];
@@ -163,6 +181,35 @@ impl Prefilter<'_> {
         }
         (passes, from.textures)
     }
+}
+
+/// The mean of each tile, into the last level of both textures: either may hold the
+/// table in the end. Each level is in the texture that the one before is not.
+fn mean_passes(group: &Group, label: &str) -> Vec<RenderPass> {
+    let side = group.atlas.side;
+    let textures = group.textures.len();
+    let mut passes = Vec::new();
+    let (mut before, mut other) = (mains(group, 0), asides(group, 0));
+    for level in 1..=side.ilog2() {
+        let halve = Halve {
+            textures,
+            mip: before.mip,
+        };
+        other.mip = level;
+        let texels = Texels::all(side >> level);
+        passes.push(pass(label, group, &before, &other, texels, |_| {
+            halve.stage()
+        }));
+        std::mem::swap(&mut before, &mut other);
+    }
+    other.mip = before.mip;
+    let copy = CopyLevel {
+        textures,
+        mip: before.mip,
+    };
+    let one = Texels::all(1);
+    passes.push(pass(label, group, &before, &other, one, |_| copy.stage()));
+    passes
 }
 
 /// Level `mip` of the group's textures.

@@ -15,8 +15,8 @@ pub(super) const TERMS: ParamInfo = ParamInfo {
 pub(super) const FILTER: ParamInfo = ParamInfo {
     name: "filter",
     default: "mip",
-    valid: "mip|sat|sat-u32",
-    summary: "prefiltering: mip chains, summed-area tables in floats, or in exact wrapping integers",
+    valid: "mip|sat|sat-mean|sat-u32",
+    summary: "prefiltering: mip chains, or summed-area tables of floats, of floats less their mean, or of exact wrapping integers",
 };
 
 pub(super) const EDGES: ParamInfo = ParamInfo {
@@ -89,11 +89,18 @@ pub(super) const MIP_SHARPER: ParamInfo = ParamInfo {
     summary: "mip levels finer than the one whose texels are as wide as the kernel",
 };
 
+pub(super) const PROBES: ParamInfo = ParamInfo {
+    name: "probes",
+    default: "auto",
+    valid: "auto|1|2|4|8|16",
+    summary: "squares along the longer side of a rectangle's kernel under mip; auto: as many as fit it",
+};
+
 pub(super) const SKIP: ParamInfo = ParamInfo {
     name: "skip",
     default: "on",
     valid: "on|off",
-    summary: "build images, mip levels and tables only where some receiver reads them; same bits",
+    summary: "build images, mip levels and tables only where some receiver reads them, look a further light up only in tiles that it can light; same bits",
 };
 
 /// How images are prefiltered.
@@ -101,6 +108,8 @@ pub(super) const SKIP: ParamInfo = ParamInfo {
 pub(super) enum Filter {
     Mip,
     Sat,
+    /// Of what is left after the mean is taken off.
+    SatMean,
     SatU32,
 }
 
@@ -121,6 +130,8 @@ pub(super) struct Settings {
     pub(super) iterations: u32,
     pub(super) threshold: f32,
     pub(super) sharper: f64,
+    /// `None`: by the light's sides.
+    pub(super) probes: Option<u32>,
     pub(super) skip: bool,
 }
 
@@ -135,6 +146,7 @@ impl Settings {
         };
         let filter = match params.get(FILTER.name) {
             "sat" => Filter::Sat,
+            "sat-mean" => Filter::SatMean,
             "sat-u32" => Filter::SatU32,
             _ => Filter::Mip,
         };
@@ -161,6 +173,7 @@ impl Settings {
             iterations: number(&ITERATE) as u32,
             threshold: number(&THRESHOLD) as f32,
             sharper: number(&MIP_SHARPER),
+            probes: params.get(PROBES.name).parse().ok(),
             skip: params.get(SKIP.name) != "off",
         })
     }

@@ -1,6 +1,7 @@
 //! Convex polygons in space: clipping, and bounds of what a light sees of them.
 
 use glam::DVec3;
+use gnomon_shaders::light_view::Projection;
 
 /// Keeps of a convex polygon where `side` is not negative; `side` must be affine.
 /// `scratch` is overwritten.
@@ -23,7 +24,17 @@ pub(super) fn clip(
     std::mem::swap(polygon, scratch);
 }
 
-/// A rectangle of tangents (x/z, y/z) and an interval of distances z.
+/// Where a point with positive z is in a picture: tangents, or lengths where views
+/// are orthographic.
+pub(super) fn place_of(p: DVec3, projection: Projection) -> [f64; 2] {
+    match projection {
+        Projection::Perspective => [p.x / p.z, p.y / p.z],
+        Projection::Orthographic => [p.x, p.y],
+    }
+}
+
+/// A rectangle of places, tangents (x/z, y/z) or lengths (x, y), and an interval of
+/// distances z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TangentBox {
     pub(super) low: [f64; 2],
@@ -42,10 +53,10 @@ impl TangentBox {
     };
 
     /// Bounds of points with positive z.
-    pub(super) fn of(points: &[DVec3]) -> Self {
+    pub(super) fn of(points: &[DVec3], projection: Projection) -> Self {
         let mut bounds = Self::EMPTY;
         for p in points {
-            let place = [p.x / p.z, p.y / p.z];
+            let place = place_of(*p, projection);
             for (k, t) in place.into_iter().enumerate() {
                 bounds.low[k] = bounds.low[k].min(t);
                 bounds.high[k] = bounds.high[k].max(t);
@@ -123,14 +134,19 @@ mod tests {
 
     #[test]
     fn boxes_join_meet_and_grow() {
-        let a = TangentBox::of(&[DVec3::new(2.0, 0.0, 2.0), DVec3::new(-1.0, 4.0, 4.0)]);
+        let corners = [DVec3::new(2.0, 0.0, 2.0), DVec3::new(-1.0, 4.0, 4.0)];
+        let flat = TangentBox::of(&corners, Projection::Orthographic);
+        assert_eq!((flat.low, flat.high), ([-1.0, 0.0], [2.0, 4.0]));
+        let a = TangentBox::of(&corners, Projection::Perspective);
         assert_eq!((a.low, a.high), ([-0.25, 0.0], [1.0, 1.0]));
         assert_eq!((a.nearest, a.farthest), (2.0, 4.0));
-        let far = TangentBox::of(&[DVec3::new(30.0, 1.0, 10.0)]);
+        let far = TangentBox::of(&[DVec3::new(30.0, 1.0, 10.0)], Projection::Perspective);
         assert!(!a.overlaps(&far) && a.overlaps(&far.grown([2.0, 0.0])));
         let mut both = a;
         both.join(&far);
         assert_eq!((both.high[0], both.farthest), (3.0, 10.0));
-        assert!(TangentBox::EMPTY.is_empty() && TangentBox::of(&[]).is_empty());
+        assert!(
+            TangentBox::EMPTY.is_empty() && TangentBox::of(&[], Projection::Perspective).is_empty()
+        );
     }
 }

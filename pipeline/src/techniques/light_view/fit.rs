@@ -8,7 +8,7 @@
 //! casters; what is outside of it is known to be empty.
 
 use glam::DVec3;
-use gnomon_shaders::light_view::ViewRegion;
+use gnomon_shaders::light_view::{Projection, ViewRegion};
 
 use super::convex::{TangentBox, clip};
 use super::frame::{LightExtent, LightFrame};
@@ -56,9 +56,9 @@ const NARROWEST: f64 = 1e-5;
 pub(crate) struct Fitted {
     pub(crate) frame: LightFrame,
     pub(crate) region: ViewRegion,
-    /// Tangents in the middle of the picture.
+    /// Tangents in the middle of the picture; of orthographic views, lengths.
     pub(crate) middle: [f64; 2],
-    /// Half its width and height, in tangents.
+    /// Half its width and height, likewise.
     pub(crate) half: f64,
     /// Distances that are stored as 0 and 1.
     pub(crate) range: [f64; 2],
@@ -116,9 +116,10 @@ pub(crate) fn fit(
         FitTo::Casters => window.meet(&casters),
         FitTo::Receivers => window,
     };
-    let widest = match region {
-        ViewRegion::Front => WIDEST_PLANAR,
-        ViewRegion::Face => WIDEST_FACE,
+    let widest = match (frame.projection, region) {
+        (Projection::Orthographic, _) => f64::INFINITY,
+        (_, ViewRegion::Front) => WIDEST_PLANAR,
+        (_, ViewRegion::Face) => WIDEST_FACE,
     };
     let limited = inside.steepest() > widest;
     let steepest = inside.steepest();
@@ -130,7 +131,11 @@ pub(crate) fn fit(
     if inside.is_empty() {
         return None;
     }
-    let (middle, half) = square(&inside, fitting.size);
+    let narrowest = match frame.projection {
+        Projection::Perspective => NARROWEST,
+        Projection::Orthographic => NARROWEST * farthest,
+    };
+    let (middle, half) = square(&inside, fitting.size, narrowest);
     let picture = TangentBox {
         low: middle.map(|m| m - half),
         high: middle.map(|m| m + half),
@@ -157,12 +162,12 @@ pub(crate) fn fit(
 }
 
 /// Middle and half side of the square round `inside`, with free texels.
-fn square(inside: &TangentBox, size: u32) -> ([f64; 2], f64) {
+fn square(inside: &TangentBox, size: u32, narrowest: f64) -> ([f64; 2], f64) {
     let middle = [0, 1].map(|k| (inside.low[k] + inside.high[k]) / 2.0);
     let halves = [0, 1].map(|k| (inside.high[k] - inside.low[k]) / 2.0);
     let size = f64::from(size);
     let free = size / (size - 2.0 * FREE_TEXELS);
-    (middle, halves[0].max(halves[1]).max(NARROWEST) * free)
+    (middle, halves[0].max(halves[1]).max(narrowest) * free)
 }
 
 fn joined<'a>(facets: impl IntoIterator<Item = &'a Facet>) -> TangentBox {
@@ -226,7 +231,7 @@ fn receivers_box(
 ) -> TangentBox {
     let mut all = TangentBox::EMPTY;
     receivers_beyond(around, frame, region, near, |polygon| {
-        all.join(&TangentBox::of(polygon));
+        all.join(&TangentBox::of(polygon, frame.projection));
     });
     all
 }
@@ -240,12 +245,12 @@ fn facets(around: &Surroundings<'_>, frame: &LightFrame, near: f64) -> Vec<Facet
             let corners = mesh.corners(t).map(|p| frame.local(p));
             let nearer = corners.iter().filter(|p| p.z < near).count();
             let bounds = match nearer {
-                0 => TangentBox::of(&corners),
+                0 => TangentBox::of(&corners, frame.projection),
                 1 | 2 => {
                     polygon.clear();
                     polygon.extend(corners);
                     clip(&mut polygon, &mut scratch, |p| p.z - near);
-                    TangentBox::of(&polygon)
+                    TangentBox::of(&polygon, frame.projection)
                 }
                 _ => continue,
             };

@@ -1,7 +1,9 @@
 //! Where a light is seen from: its centre, axes and extent, in f64.
 
 use glam::DVec3;
+use gnomon_shaders::light_view::Projection;
 
+use super::surroundings::Surroundings;
 use crate::area_light::AreaLight;
 use crate::light::{HardLight, Light, LightShape};
 use crate::technique::TechniqueError;
@@ -12,6 +14,8 @@ use crate::technique::TechniqueError;
 pub(crate) struct LightFrame {
     pub(crate) centre: DVec3,
     pub(crate) axes: [DVec3; 3],
+    /// Orthographic: the centre is any point before all that matters.
+    pub(crate) projection: Projection,
 }
 
 impl LightFrame {
@@ -90,7 +94,7 @@ impl ViewedLight {
     /// The scene's light of that number, for an error that names it.
     ///
     /// # Errors
-    /// It is directional, or has no area where it should.
+    /// It has no place or direction, or no area where it should.
     pub(crate) fn new(
         technique: &'static str,
         light: &Light,
@@ -100,11 +104,18 @@ impl ViewedLight {
             technique,
             light: number,
             why,
-            valid: "points, rectangles, discs, spheres and polygons",
+            valid: "points, directions, rectangles, discs, spheres and polygons",
         };
-        let HardLight::Point(centre) = light.hard() else {
-            let why = "it is directional, and planar views are taken from a point";
-            return Err(refused(why.to_owned()));
+        let centre = match light.hard() {
+            HardLight::Point(centre) => centre,
+            HardLight::Directional(towards) => {
+                let frame = along_direction(towards);
+                let why = || refused(format!("its direction is {towards}"));
+                return Ok(Self {
+                    frame: frame.ok_or_else(why)?,
+                    extent: LightExtent::None,
+                });
+            }
         };
         if !centre.is_finite() {
             return Err(refused(format!("its centre is {centre}")));
@@ -113,9 +124,32 @@ impl ViewedLight {
             AreaLight::new(&light.shape).map_err(|e| refused(e.to_string()))?;
         }
         let (axes, extent) = axes_and_extent(&light.shape);
-        let frame = LightFrame { centre, axes };
+        let projection = Projection::Perspective;
+        let frame = LightFrame {
+            centre,
+            axes,
+            projection,
+        };
         Ok(Self { frame, extent })
     }
+
+    /// A point near the light, or near what is lit where the light has no place.
+    pub(crate) fn reference(&self, around: &Surroundings<'_>) -> DVec3 {
+        match self.frame.projection {
+            Projection::Perspective => self.frame.centre,
+            Projection::Orthographic => around.middle().unwrap_or(self.frame.centre),
+        }
+    }
+}
+
+/// The frame of a light from a direction; its centre is still to be found.
+fn along_direction(towards: DVec3) -> Option<LightFrame> {
+    let along = -towards.try_normalize()?;
+    Some(LightFrame {
+        centre: DVec3::ZERO,
+        axes: axes_of(along.any_orthonormal_vector(), along),
+        projection: Projection::Orthographic,
+    })
 }
 
 /// Half the side of a square as large as a unit disc.
@@ -219,16 +253,21 @@ mod tests {
     }
 
     #[test]
-    fn directional_lights_are_refused() {
-        let towards = DVec3::Y;
-        let light = Light {
-            shape: LightShape::Directional { towards },
-            colour: [1.0; 3],
-        };
-        let message = ViewedLight::new("pcf", &light, 2).unwrap_err().to_string();
-        assert!(
-            message.contains("light 2") && message.contains("directional"),
-            "{message}"
-        );
+    fn directional_lights_need_a_direction() {
+        let sun = |towards| LightShape::Directional { towards };
+        let frame = viewed(sun(DVec3::new(0.0, 3.0, 0.0))).frame;
+        assert_eq!(frame.projection, Projection::Orthographic);
+        assert_eq!(frame.axes[2], DVec3::NEG_Y);
+        for towards in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
+            let light = Light {
+                shape: sun(towards),
+                colour: [1.0; 3],
+            };
+            let message = ViewedLight::new("pcf", &light, 2).unwrap_err().to_string();
+            assert!(
+                message.contains("light 2") && message.contains("direction is"),
+                "{message}"
+            );
+        }
     }
 }

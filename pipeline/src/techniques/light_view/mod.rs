@@ -14,6 +14,9 @@
 //! Regions of views do not overlap, and each is drawn only where some receiver
 //! that the camera sees can have a caster in the way; elsewhere all is lit.
 //!
+//! Directional lights are looked along by one orthographic view, from before all that
+//! matters; places in its picture are lengths instead of tangents.
+//!
 //! Casters outside a view are left out, which changes no bit: `skip=off` draws
 //! them all.
 
@@ -26,13 +29,15 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 
-use gnomon_shaders::light_view::ViewRegion;
+use gnomon_shaders::light_view::{Projection, ViewRegion};
 
 pub(crate) use fit::{FitTo, Fitted, Fitting};
 pub(crate) use frame::{LightExtent, LightFrame, ViewedLight};
 pub(crate) use picture::{CasterGeometry, LightMap};
 pub(crate) use reads::Reads;
 pub(crate) use surroundings::Surroundings;
+
+use crate::mesh::widen;
 
 /// Largest tangent of a view to one side; beyond, a cube is better.
 const WIDEST: f64 = 4.0;
@@ -56,6 +61,11 @@ pub(crate) fn views_of(
     views: Views,
     fitting: &Fitting,
 ) -> Vec<Fitted> {
+    if light.frame.projection == Projection::Orthographic {
+        let frame = before_everything(light.frame, around);
+        let view = fit::fit(around, frame, ViewRegion::Front, light.extent, fitting);
+        return view.into_iter().collect();
+    }
     let frame = match light.extent {
         LightExtent::Flat(_) => light.frame,
         LightExtent::None | LightExtent::Ball(_) => towards_receivers(light.frame, around),
@@ -79,6 +89,26 @@ pub(crate) fn views_of(
             if narrow { found } else { cube() }
         }
     }
+}
+
+/// An orthographic frame from which all receivers and casters are in front, the
+/// nearest of them beyond where views begin.
+fn before_everything(frame: LightFrame, around: &Surroundings<'_>) -> LightFrame {
+    /// Room before the nearest point, as a share of the depth of all.
+    const ROOM: f64 = 1.0 / 128.0;
+    let Some(middle) = around.middle() else {
+        return frame;
+    };
+    let frame = frame.at(middle);
+    let receivers = around.receivers().flatten().copied();
+    let casters = around.casters.iter();
+    let corners = casters.flat_map(|(_, mesh)| mesh.positions().iter().map(|p| widen(*p)));
+    let distances = receivers.chain(corners).map(|p| frame.local(p).z);
+    let empty = (f64::INFINITY, f64::NEG_INFINITY);
+    let (near, far) = distances.fold(empty, |(a, b), z| (a.min(z), b.max(z)));
+    // All in one plane across: any room will do.
+    let depth = if far > near { far - near } else { 1.0 };
+    frame.at(middle + frame.axes[2] * (near - depth * ROOM))
 }
 
 /// A frame whose axis goes to the middle of what the camera sees.

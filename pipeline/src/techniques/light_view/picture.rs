@@ -8,7 +8,7 @@ use gnomon_raster::{
     DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp, RenderPass, RenderPipeline, StoreOp,
     Subresource, TextureDescriptor, TextureId, VertexBuffer,
 };
-use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth};
+use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth, Projection};
 use gnomon_shaders::surface::PixelRays;
 use gnomon_shaders::transform::{ClipFromWorld, Facets};
 
@@ -124,9 +124,10 @@ impl Fitted {
     ) -> RenderPass {
         let shader = PlanarDepth {
             rays: self.rays(geometry.reference, map.size),
+            projection: self.frame.projection,
             range: self.depth_range(),
             slope: map.slope as f32,
-            slope_limit: (self.texel(map.size) * self.range[1] * SLOPE_LIMIT) as f32,
+            slope_limit: (self.texel_at_far(map.size) * SLOPE_LIMIT) as f32,
         };
         let pipeline = Arc::new(RenderPipeline {
             label: "light view".into(),
@@ -161,6 +162,7 @@ impl Fitted {
         LightMapping {
             centre: narrow(view.relative(self.frame.centre)),
             axes: self.frame.axes.map(narrow),
+            projection: self.frame.projection,
             scale: scale as f32,
             offset: self.middle.map(|m| (0.5 - m * scale) as f32),
             range: self.depth_range(),
@@ -174,25 +176,38 @@ impl Fitted {
         DepthRange { near, far }
     }
 
-    /// Width of a texel at the distance of 1.
-    pub(crate) fn texel(&self, size: u32) -> f64 {
+    /// Width of a texel in the picture: of tangents, or of lengths.
+    fn texel(&self, size: u32) -> f64 {
         2.0 * self.half / f64::from(size)
+    }
+
+    /// Width of a texel at the far distance, world units.
+    pub(crate) fn texel_at_far(&self, size: u32) -> f64 {
+        match self.frame.projection {
+            Projection::Perspective => self.texel(size) * self.range[1],
+            Projection::Orthographic => self.texel(size),
+        }
     }
 
     fn rays(&self, reference: DVec3, size: u32) -> PixelRays {
         let [right, down, along] = self.frame.axes;
         let [x, y] = self.middle.map(|m| m - self.half);
         let texel = self.texel(size);
+        let (eye, corner) = (self.frame.centre - reference, right * x + down * y);
+        let (eye, first) = match self.frame.projection {
+            Projection::Perspective => (eye, along + corner),
+            Projection::Orthographic => (eye + corner, along),
+        };
         PixelRays {
-            eye: narrow(self.frame.centre - reference),
-            first: narrow(along + right * x + down * y),
+            eye: narrow(eye),
+            first: narrow(first),
             right: narrow(right * texel),
             down: narrow(down * texel),
         }
     }
 
-    /// Depth 0 at the near distance, 1 at infinity; the picture's upper edge is
-    /// `y = w`.
+    /// Depth 0 at the near distance, 1 at infinity, of orthographic views at the far
+    /// distance; the picture's upper edge is `y = w`.
     fn clip_from_world(&self, view: &View) -> ClipFromWorld {
         let [right, down, along] = self.frame.axes;
         let centre = view.relative(self.frame.centre);
@@ -201,6 +216,16 @@ impl Fitted {
             [x, y, z, offset - axis.dot(centre)].map(|v| v as f32)
         };
         let [x, y] = self.middle;
+        if self.frame.projection == Projection::Orthographic {
+            let [near, far] = self.range;
+            let depth = far - near;
+            return ClipFromWorld([
+                row(right / self.half, -x / self.half),
+                row(-down / self.half, y / self.half),
+                row(along / depth, -near / depth),
+                [0.0, 0.0, 0.0, 1.0],
+            ]);
+        }
         ClipFromWorld([
             row((right - along * x) / self.half, 0.0),
             row((along * y - down) / self.half, 0.0),

@@ -1,6 +1,7 @@
 //! What of a picture receivers read when they filter over what lies between them and
 //! the light.
 
+use super::convex::place_of;
 use super::fit::{Fitted, receivers_beyond};
 use super::frame::LightExtent;
 use super::surroundings::Surroundings;
@@ -30,7 +31,7 @@ impl Fitted {
             let reach = (1.0 / near - 1.0 / farthest) * (1.0 + ROUNDING);
             let half = light.map(|l| l * reach);
             for p in polygon {
-                let place = [p.x / p.z, p.y / p.z];
+                let place = place_of(*p, self.frame.projection);
                 let at = [0, 1].map(|k| 0.5 + (place[k] - self.middle[k]) * scale);
                 let grown = [0, 1].map(|k| half[k] + ROUNDING * (1.0 + at[k].abs()));
                 let own = Reads {

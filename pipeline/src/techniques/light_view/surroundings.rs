@@ -12,8 +12,19 @@ pub(crate) struct Surroundings<'a> {
     corners: Vec<DVec3>,
     /// Where each polygon's corners end.
     ends: Vec<usize>,
+    /// What each polygon is a part of.
+    owners: Vec<Owner>,
     /// Casters: number in the scene, and mesh.
     pub(super) casters: Vec<(usize, &'a Mesh)>,
+}
+
+/// A triangle of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Owner {
+    /// Number in the scene.
+    pub(crate) object: usize,
+    /// Number in the mesh.
+    pub(crate) triangle: usize,
 }
 
 impl<'a> Surroundings<'a> {
@@ -22,12 +33,13 @@ impl<'a> Surroundings<'a> {
         let mut all = Self {
             corners: Vec::new(),
             ends: Vec::new(),
+            owners: Vec::new(),
             casters: Vec::new(),
         };
         let pyramid = Pyramid::new(&scene.camera, size);
         for (number, object) in scene.objects.iter().enumerate() {
             if object.receives {
-                all.gather(&object.mesh, &pyramid);
+                all.gather(number, &object.mesh, &pyramid);
             }
             if object.casts && !object.mesh.triangles().is_empty() {
                 all.casters.push((number, &object.mesh));
@@ -36,15 +48,16 @@ impl<'a> Surroundings<'a> {
         all
     }
 
-    fn gather(&mut self, mesh: &Mesh, pyramid: &Pyramid) {
+    fn gather(&mut self, object: usize, mesh: &Mesh, pyramid: &Pyramid) {
         let (mut polygon, mut scratch) = (Vec::new(), Vec::new());
-        for t in 0..mesh.triangles().len() {
+        for triangle in 0..mesh.triangles().len() {
             polygon.clear();
-            polygon.extend(mesh.corners(t));
+            polygon.extend(mesh.corners(triangle));
             pyramid.clip(&mut polygon, &mut scratch);
             if !polygon.is_empty() {
                 self.corners.extend_from_slice(&polygon);
                 self.ends.push(self.corners.len());
+                self.owners.push(Owner { object, triangle });
             }
         }
     }
@@ -57,6 +70,11 @@ impl<'a> Surroundings<'a> {
             start = end;
             polygon
         })
+    }
+
+    /// The same with the triangles that they are parts of.
+    pub(crate) fn owned_receivers(&self) -> impl Iterator<Item = (Owner, &[DVec3])> {
+        self.owners.iter().copied().zip(self.receivers())
     }
 
     /// Mean of the receivers' corners; `None` where nothing is seen.

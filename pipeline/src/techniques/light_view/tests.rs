@@ -295,7 +295,7 @@ fn slopes_push_surfaces_back_by_what_texels_need() {
         let plain = sloped(&scene, &fitted, true, 0.0);
         let pushed = sloped(&scene, &fitted, true, 0.5);
         let [near, far] = fitted.range;
-        let limit = 8.0 * fitted.texel(SIZE) * far / (far - near);
+        let limit = 8.0 * fitted.texel_at_far(SIZE) / (far - near);
         let moved: Vec<f64> = plain
             .iter()
             .zip(&pushed)

@@ -21,6 +21,7 @@ pub(super) use params::{
 };
 
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
+use super::lit_tiles::{LitTiles, ReceiverTiles};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
 use crate::scene::Scene;
@@ -115,8 +116,12 @@ impl Mapped<'_> {
         let around = Surroundings::new(self.scene, self.size);
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut notes = Notes::default();
+        let receivers = ReceiverTiles::new(self.scene, &around, &draws.view);
         for &light in lights.iter().rev() {
             let sources = sources(light)?;
+            // Visibility of the first is an output and needed everywhere.
+            let skip = maps.skip && light != lights[0];
+            let tiles = skip.then(|| receivers.lit_by(&self.scene.lights[light]));
             let one = OneLight {
                 scene: self.scene,
                 view: &draws.view,
@@ -126,6 +131,7 @@ impl Mapped<'_> {
                 positions,
                 visibility,
                 margin: self.margin,
+                tiles: tiles.as_ref(),
                 label: &|what| passes::label(what, light, &lights),
             };
             list.extend(one.passes(&sources, &shader, &mut notes));
@@ -150,6 +156,8 @@ struct OneLight<'a> {
     positions: Positions,
     visibility: VisibilityTexture,
     margin: Margin,
+    /// Where shadows matter; `None`: everywhere.
+    tiles: Option<&'a LitTiles>,
     label: &'a dyn Fn(&str) -> String,
 }
 
@@ -160,10 +168,15 @@ impl OneLight<'_> {
         shader: &impl Fn(&LookUp<'_>) -> FragmentStage,
         notes: &mut Notes,
     ) -> Vec<RenderPass> {
-        let Some(first) = sources.lights.first() else {
+        if let Some(tiles) = self.tiles {
+            notes.skipped(tiles, self.label);
+        }
+        let nowhere = self.tiles.is_some_and(LitTiles::is_empty);
+        let Some(first) = sources.lights.first().filter(|_| !nowhere) else {
             return vec![self.look_up(LoadOp::Clear([1.0; 4]), None)];
         };
-        let geometry = CasterGeometry::new(self.scene, self.around, self.view, first.frame.centre);
+        let reference = first.reference(self.around);
+        let geometry = CasterGeometry::new(self.scene, self.around, self.view, reference);
         let mut passes = Vec::new();
         let mut load = LoadOp::Clear([1.0; 4]);
         let mut said = Said::default();
@@ -209,7 +222,10 @@ impl OneLight<'_> {
                 color_targets: vec![blend],
             };
             let bindings = [self.positions.texture, self.map.depth].map(binding);
-            full_screen(pipeline, bindings.to_vec())
+            match self.tiles {
+                Some(tiles) => tiles.draw(pipeline, bindings.to_vec()),
+                None => full_screen(pipeline, bindings.to_vec()),
+            }
         };
         RenderPass {
             label: (self.label)("look-up"),

@@ -1,6 +1,7 @@
 //! What is said of a frame's light views: figures and warnings.
 
 use super::super::light_view::Fitted;
+use super::super::lit_tiles::LitTiles;
 use crate::technique::{Figure, Warning};
 
 /// What is said of the views of a frame.
@@ -8,6 +9,20 @@ use crate::technique::{Figure, Warning};
 pub(in crate::techniques) struct Notes {
     pub(in crate::techniques) warnings: Vec<Warning>,
     pub(in crate::techniques) figures: Vec<Figure>,
+}
+
+impl Notes {
+    /// Tiles in which a light's look-ups are left out.
+    pub(in crate::techniques) fn skipped(
+        &mut self,
+        tiles: &LitTiles,
+        label: &dyn Fn(&str) -> String,
+    ) {
+        self.figures.push(Figure {
+            name: label("skipped-tiles"),
+            value: tiles.skipped() as f64,
+        });
+    }
 }
 
 /// What is to be said of a light's views, together.
@@ -29,7 +44,7 @@ impl Said {
         self.limited += usize::from(fitted.limited);
         self.bias = self.bias.max(bias);
         let [near, far] = fitted.range;
-        self.texel = self.texel.max(fitted.texel(size) * far);
+        self.texel = self.texel.max(fitted.texel_at_far(size));
         let [nearest, farthest] = self.range.unwrap_or([near, far]);
         self.range = Some([nearest.min(near), farthest.max(far)]);
     }

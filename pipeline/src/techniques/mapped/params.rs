@@ -50,7 +50,7 @@ pub(in crate::techniques) const SKIP: ParamInfo = ParamInfo {
     name: "skip",
     default: "on",
     valid: "on|off",
-    summary: "leave out casters outside a light view; same bits",
+    summary: "leave out casters outside a light view, and tiles of the screen to which a further light adds nothing; same bits",
 };
 
 /// The checked values of the parameters above.
@@ -101,7 +101,7 @@ impl MapParams {
 
     /// The bias of a view, world units.
     pub(in crate::techniques) fn bias(&self, fitted: &Fitted, margin: Margin) -> f64 {
-        let texel = fitted.texel(self.fitting.size) * fitted.range[1];
+        let texel = fitted.texel_at_far(self.fitting.size);
         self.bias.unwrap_or(texel * margin.bias)
     }
 }

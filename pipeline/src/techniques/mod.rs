@@ -3,6 +3,7 @@
 mod casters;
 mod convolution_soft_shadows;
 mod given_visibility;
+mod horizon;
 mod light_view;
 mod lit_tiles;
 mod mapped;

@@ -18,6 +18,7 @@ use std::sync::Arc;
 
 use gnomon_shaders::shadow_maps::{SampledKernel, WholeKernel};
 
+use super::horizon::HORIZON;
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::scene::Scene;
@@ -89,6 +90,7 @@ impl Technique for Pcss {
             mapped::NEAR,
             mapped::VIEW,
             mapped::FIT,
+            HORIZON,
             passes::LIGHT,
             mapped::SKIP,
             passes::SHADING,

@@ -9,6 +9,7 @@
 use gnomon_raster::state::ColorTargetState;
 use gnomon_shaders::shadow_maps::BoxTaps;
 
+use super::horizon::HORIZON;
 use super::light_view::{LightExtent, ViewedLight};
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
@@ -61,6 +62,7 @@ impl Technique for ShadowMapsN {
             mapped::NEAR,
             mapped::VIEW,
             mapped::FIT,
+            HORIZON,
             passes::LIGHT,
             mapped::SKIP,
             passes::SHADING,

@@ -27,6 +27,7 @@ use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
 use gnomon_shaders::transform::FullScreen;
 
 use super::casters::{OPEN_CASTERS, SKIP};
+use super::horizon::{HORIZON, Horizon};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::soft::count::Counting;
 use super::soft::covering::{
@@ -34,7 +35,6 @@ use super::soft::covering::{
     TEXTURE_SIZE, light_image,
 };
 use super::soft::edges::{Casters, Silhouettes};
-use super::soft::horizon::{self, HORIZON};
 use super::soft::light::SoftLight;
 use super::soft::wedges::{
     AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
@@ -144,11 +144,11 @@ impl Technique for SoftShadowVolumes {
             list.push(volumes.count_pass(label("quads"), &silhouettes));
             list.extend(volumes.wedge_passes(&label("wedges"), &silhouettes, &mut warnings));
             list.extend(buffers.resolve_pass(label("resolve")));
-            let image = light_image(params);
-            if horizon::wanted(self.name(), light, &soft, image.as_ref(), params)? {
-                let (label, visibility) = (label("horizon"), buffers.visibility());
-                list.extend(horizon::pass(label, &draws, &targets, &soft, visibility));
-            }
+            let image = light_image(params).is_some();
+            let horizon = Horizon::wanted(self.name(), light, shape, image, params)?;
+            let limit =
+                |h: Horizon| h.pass(label("horizon"), &draws, &targets, buffers.visibility());
+            list.extend(horizon.and_then(limit));
             let test = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }

@@ -30,11 +30,11 @@ use gnomon_shaders::split_volumes::{
 use gnomon_shaders::transform::FullScreen;
 
 use super::casters::{OPEN_CASTERS, SKIP};
+use super::horizon::{HORIZON, Horizon};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::soft::count::Counting;
 use super::soft::edges::{Casters, Silhouettes};
 use super::soft::halves::Half;
-use super::soft::horizon::{self, HORIZON};
 use super::soft::light::{LightSide, SoftLight, split};
 use super::soft::split_tables;
 use super::soft::wedges::{
@@ -179,18 +179,11 @@ impl Technique for SoftShadowVolumesOptimised {
             }
             let label = |what: &str| passes::label(what, number, &lights);
             warnings.extend(warnings_of(&label("wedges"), &met.wedges, &met.areas));
-            let seen = params.get(SPHERE.name) != "equator";
-            let whole = SoftLight::new(
-                self.name(),
-                &scene.lights[number],
-                number,
-                &draws.view,
-                seen,
-            )?;
-            if horizon::wanted(self.name(), number, &whole, None, params)? {
-                let (label, visibility) = (label("horizon"), buffers.visibility());
-                list.extend(horizon::pass(label, &draws, &targets, &whole, visibility));
-            }
+            let light = &scene.lights[number];
+            let horizon = Horizon::wanted(self.name(), number, light, false, params)?;
+            let limit =
+                |h: Horizon| h.pass(label("horizon"), &draws, &targets, buffers.visibility());
+            list.extend(horizon.and_then(limit));
             let visibility = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, number, &label("lit"), visibility));
         }

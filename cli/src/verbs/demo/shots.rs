@@ -54,13 +54,13 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry {
         name: "csm",
         technique: "convolution-soft-shadows",
-        settings: &[],
+        settings: &[("horizon", "on")],
         caption: "Soft shadows from one shadow map, filtered as convolutions",
     },
     Entry {
         name: "pcss",
         technique: "pcss",
-        settings: &[],
+        settings: &[("horizon", "on")],
         caption: "Soft shadows from one shadow map, by searching and filtering its texels",
     },
 ];

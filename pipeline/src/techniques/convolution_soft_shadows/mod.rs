@@ -44,6 +44,7 @@ use self::images::{BasisTextures, filtered};
 use self::needed::Needed;
 use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
+use super::horizon::{HORIZON, Horizon};
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
 use super::lit_tiles::{LitTiles, ReceiverTiles};
 use super::mapped::{self, Notes, Said};
@@ -85,6 +86,7 @@ impl Technique for ConvolutionSoftShadows {
             settings::THRESHOLD,
             settings::MIP_SHARPER,
             settings::PROBES,
+            HORIZON,
             passes::LIGHT,
             settings::SKIP,
             passes::SHADING,
@@ -135,6 +137,9 @@ impl Technique for ConvolutionSoftShadows {
             notes
                 .warnings
                 .extend(square_instead(&scene.lights[light], light));
+            let horizon = Horizon::wanted(self.name(), light, &scene.lights[light], false, params)?;
+            let limit = |h: Horizon| h.pass(label("horizon"), &shadows.draws, targets, visibility);
+            list.extend(horizon.and_then(limit));
             let test = LitTest::Visibility(visibility);
             list.push(shadows.draws.lit_pass(targets, light, &label("lit"), test));
         }

@@ -20,6 +20,7 @@ pub(super) use params::{
     BIAS, FIT, MAP_SIZE, Margin, NEAR, SKIP, SLOPE_BIAS, VIEW, pattern, square_side,
 };
 
+use super::horizon::Horizon;
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
 use super::lit_tiles::{LitTiles, ReceiverTiles};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
@@ -135,9 +136,13 @@ impl Mapped<'_> {
                 label: &|what| passes::label(what, light, &lights),
             };
             list.extend(one.passes(&sources, &shader, &mut notes));
-            let label = passes::label("lit", light, &lights);
+            let label = |what: &str| passes::label(what, light, &lights);
+            let shone = &self.scene.lights[light];
+            let horizon = Horizon::wanted(self.name, light, shone, false, self.params)?;
+            let limit = |h: Horizon| h.pass(label("horizon"), &draws, &targets, visibility);
+            list.extend(horizon.and_then(limit));
             let test = LitTest::Visibility(visibility);
-            list.push(draws.lit_pass(&targets, light, &label, test));
+            list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }
         let mut frame = targets.frame(list, visibility.output());
         frame.warnings = notes.warnings;

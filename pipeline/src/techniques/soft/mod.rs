@@ -5,7 +5,6 @@ pub(super) mod count;
 pub(super) mod covering;
 pub(super) mod edges;
 pub(super) mod halves;
-pub(super) mod horizon;
 pub(super) mod light;
 pub(super) mod light_image;
 mod outlines;

@@ -83,7 +83,7 @@ const COMBINE_OVER: ParamInfo = ParamInfo {
     summary: "what is combined unless summed: outlines with their holes, or all of a caster's",
 };
 
-const SPLIT: ParamInfo = ParamInfo {
+pub(super) const SPLIT: ParamInfo = ParamInfo {
     name: "split",
     default: "1",
     valid: "1|2|3|4|5|6|7|8",

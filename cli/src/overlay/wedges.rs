@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat4, DVec4};
-use gnomon_pipeline::wedge::WedgeMesh;
+use gnomon_pipeline::scene_wedges::WedgeKind;
+use gnomon_pipeline::wedge::{Construction, WedgeMesh};
 
 use super::Source;
 use crate::draw::{Canvas, Legend, Picture, Projection, Stroke, Swatch, heat};
@@ -19,11 +20,11 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
     let projection = Projection::new(&source.scene.camera, picture.size);
     let meshes = source.wedges.map_or(&[][..], |w| &w.meshes);
     // Many wedges overlap; each then says less.
-    let opacity = (40.0 / meshes.len().max(1) as f32).clamp(0.1, 0.8);
+    let opacity = (8.0 / meshes.len().max(1) as f32).clamp(0.06, 0.7);
     for mesh in meshes {
         for face in &mesh.triangles {
             let corners = face.map(|i| narrow(mesh.vertices[i as usize]));
-            canvas.fill(&projection.polygon(&corners), WEDGE, opacity * 0.12);
+            canvas.fill(&projection.polygon(&corners), WEDGE, opacity * 0.15);
         }
         for edge in outline(mesh) {
             let ends = edge.map(|i| mesh.vertices[i as usize]);
@@ -42,15 +43,30 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
 }
 
 fn legend(source: &Source<'_>, meshes: &[WedgeMesh]) -> Legend {
-    let kind = source.wedges.map_or("none", |w| w.kind.name());
+    let kind = source.wedges.map(|w| w.kind);
     let faces: usize = meshes.iter().map(|m| m.triangles.len()).sum();
+    let (finite, note) = match kind {
+        Some(WedgeKind::Linked) => (
+            "edges that they start from, and where their planes meet",
+            "neighbours share side planes; light falls off from front to back plane",
+        ),
+        Some(WedgeKind::Single(Construction::Exact)) => (
+            "edges that they start from",
+            "whoever is in a wedge sees its edge cut the light, and nobody else",
+        ),
+        _ => (
+            "edges that they start from",
+            "whoever sees an edge cut the light is in its wedge, and others are",
+        ),
+    };
+    let name = kind.map_or("none", WedgeKind::name);
     Legend {
-        title: format!("Penumbra wedges ({kind}): {}", meshes.len()),
+        title: format!("Penumbra wedges ({name}): {}", meshes.len()),
         swatches: vec![
             Swatch::new(WEDGE, format!("sides, to infinity: {faces} triangles")),
-            Swatch::new(APEX, "edges that they start from".to_owned()),
+            Swatch::new(APEX, finite.to_owned()),
         ],
-        notes: vec!["whoever is in a wedge sees its edge cut the light".to_owned()],
+        notes: vec![note.to_owned()],
         ..Legend::default()
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 /// Marks along x.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[allow(dead_code, reason = "each example uses one of them")]
-pub enum Axis {
+pub(crate) enum Axis {
     /// At powers of ten.
     Decades,
     /// At powers of two.
@@ -13,17 +13,17 @@ pub enum Axis {
 }
 
 /// A line, interrupted where there is no value.
-pub struct Series {
-    pub name: String,
-    pub points: Vec<(f64, Option<f64>)>,
+pub(crate) struct Series {
+    pub(crate) name: String,
+    pub(crate) points: Vec<(f64, Option<f64>)>,
 }
 
 /// A plot of values from `floor` to 1 over the x of the first series.
-pub struct Plot {
-    pub title: String,
-    pub axis: Axis,
-    pub floor: f64,
-    pub series: Vec<Series>,
+pub(crate) struct Plot {
+    pub(crate) title: String,
+    pub(crate) axis: Axis,
+    pub(crate) floor: f64,
+    pub(crate) series: Vec<Series>,
 }
 
 /// Height of a plot with its margins.
@@ -32,7 +32,7 @@ const HEIGHT: f64 = 360.0;
 const FRAME: [f64; 4] = [70.0, 590.0, 40.0, 310.0];
 
 /// One plot below the other.
-pub fn svg(plots: &[Plot]) -> String {
+pub(crate) fn svg(plots: &[Plot]) -> String {
     let (width, height) = (860, HEIGHT as usize * plots.len() + 20);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \

@@ -17,7 +17,9 @@ use gnomon_shaders::coverage::{FlatLight, Image, Projector, SphereLight};
 use gnomon_shaders::soft_volumes::{
     CountTo, CoverTo, ExactCoverage, HardCount, HardPlane, HardQuads, Penumbra,
 };
-use gnomon_shaders::split_volumes::{AddVisibility, CAPACITY, Combination, CombineGroups};
+use gnomon_shaders::split_volumes::{
+    AddVisibility, CAPACITY, Combination, CombineGroups, Halves, SplitPenumbra, Tables,
+};
 use gnomon_shaders::transform::{ClipFromWorld, FullScreen};
 
 const SIDE: u32 = 64;
@@ -336,6 +338,24 @@ fn count_everywhere(normal: DVec3, positions: TextureId) -> Draw {
     draw
 }
 
+/// An edge longer than the light is wide, its hard plane's normal, and receivers on
+/// that plane behind the middle of the edge, and -2 to 2 ulp off.
+fn receivers_on_a_plane(random: &mut Random) -> ([DVec3; 2], DVec3, Vec<[f32; 4]>) {
+    let slope = random.point(0.3);
+    let along = DVec3::new(1.5, slope.x, 0.0);
+    let middle = DVec3::new(0.0, slope.y, -2.0);
+    let ends = [middle - along, middle + along].map(wide);
+    let normal = (ends[1] - ends[0]).cross(-ends[0]).normalize();
+    let nudged = |v: f64, ulps: i32| f32::from_bits(((v as f32).to_bits() as i32 + ulps) as u32);
+    let receiver = |k: usize| {
+        let e = ends[0] + (ends[1] - ends[0]) * (0.4 + 0.2 * random.unit());
+        let p = e * (1.5 + random.unit());
+        [p.x as f32, nudged(p.y, k as i32 % 5 - 2), p.z as f32, 1.0]
+    };
+    let texels = (0..COUNT).map(receiver).collect();
+    (ends, normal, texels)
+}
+
 /// Half of the light is seen on a quad's plane, and a few ulp beside it: count and
 /// sign agree to the bit. With another plane for the sign they would not.
 #[test]
@@ -344,22 +364,7 @@ fn count_and_sign_agree_next_to_the_plane() {
     let (light, rows) = projector(&shapes()[0]);
     let mut mismatched = 0;
     for _ in 0..20 {
-        let slope = random.point(0.3);
-        let along = DVec3::new(1.5, slope.x, 0.0);
-        let middle = DVec3::new(0.0, slope.y, -2.0);
-        let ends = [middle - along, middle + along].map(wide);
-        let normal = (ends[1] - ends[0]).cross(-ends[0]).normalize();
-        let nudged =
-            |v: f64, ulps: i32| f32::from_bits(((v as f32).to_bits() as i32 + ulps) as u32);
-        let texels: Vec<[f32; 4]> = (0..COUNT)
-            .map(|k| {
-                // On the plane, behind the middle of the edge, and -2..=2 ulp off.
-                let e = ends[0] + (ends[1] - ends[0]) * (0.4 + 0.2 * random.unit());
-                let p = e * (1.5 + random.unit());
-                let ulps = k as i32 % 5 - 2;
-                [p.x as f32, nudged(p.y, ulps), p.z as f32, 1.0]
-            })
-            .collect();
+        let (ends, normal, texels) = receivers_on_a_plane(&mut random);
         let mut gpu = gpu();
         let positions = texture(&mut gpu, Format::Rgba32Float);
         let target = gpu.texture_mut(positions).unwrap();
@@ -388,6 +393,58 @@ fn count_and_sign_agree_next_to_the_plane() {
             .count();
     }
     assert!(mismatched > 1000, "negative control: {mismatched}");
+}
+
+/// The same with coverage of 12 bits in two buffers: what they add up to, before
+/// anything is clamped, stays within 0..=4095.
+#[test]
+fn split_coverage_stays_in_range_next_to_the_plane() {
+    let mut random = Random(12);
+    let (light, rows) = projector(&shapes()[0]);
+    let mut outside = 0;
+    for _ in 0..20 {
+        let (ends, normal, texels) = receivers_on_a_plane(&mut random);
+        let mut gpu = gpu();
+        let positions = texture(&mut gpu, Format::Rgba32Float);
+        let target = gpu.texture_mut(positions).unwrap();
+        target.write_color(Subresource::default(), &texels).unwrap();
+        let hard = texture(&mut gpu, Format::R32Float);
+        let count = count_everywhere(normal, positions);
+        submit(&mut gpu, hard, LoadOp::Clear([1.0; 4]), vec![count]);
+        let hard = red(&gpu, hard);
+        let mut whole = |plane: DVec3, halves| -> Vec<f32> {
+            let shader = SplitPenumbra {
+                light,
+                edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
+                plane: HardPlane(narrow(plane)),
+                tables: Tables::default(),
+                halves,
+            };
+            let buffer = texture(&mut gpu, Format::Rgba8Unorm);
+            let wedge = full_screen(shader.stage(), ColorTargetState::ADDITIVE, &[positions]);
+            submit(&mut gpu, buffer, LoadOp::Clear([0.0; 4]), vec![wedge]);
+            let texels = gpu.texture(buffer).unwrap();
+            let texels = texels.read_color(Subresource::default()).unwrap();
+            let value = |t: [f32; 4]| {
+                let [a, b, c, d] = t.map(|c| (c * 255.0).round());
+                a + 8.0 * b + 64.0 * c + 512.0 * d
+            };
+            texels.iter().map(|t| value(t.0)).collect()
+        };
+        let mut visible = |plane: DVec3| -> Vec<f32> {
+            let [inner, outer] = [Halves::Inner, Halves::Outer].map(|h| whole(plane, h));
+            let sums = hard.iter().zip(inner.iter().zip(&outer));
+            sums.map(|(hard, (inner, outer))| 4095.0 * hard + inner - outer)
+                .collect()
+        };
+        for v in visible(normal) {
+            assert!((v - 2047.5).abs() <= 1.0, "{v}");
+        }
+        let other = (normal + DVec3::new(0.0, 0.0, 3e-7)).normalize();
+        let leaves = |v: &&f32| !(0.0..=4095.0).contains(*v);
+        outside += visible(other).iter().filter(leaves).count();
+    }
+    assert!(outside > 1000, "negative control: {outside}");
 }
 
 /// An edge in m pieces covers what it does in one.

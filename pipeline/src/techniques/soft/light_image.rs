@@ -262,19 +262,19 @@ mod tests {
         let fire = |frame: u32| (LightImage::fire(frame), format!("light-frame={frame}"));
         let windows = (LightImage::windows(), "light-frame=0".to_owned());
         let white = drawn(&scene, &["light-image=white"]);
+        let mut pictures = Vec::new();
         for (name, (image, frame)) in [("windows", windows), ("fire", fire(0)), ("fire", fire(9))] {
             let picture = drawn(&scene, &[&format!("light-image={name}"), &frame]);
             let truth = summed(&scene, &image);
             let [own, plain] = [&picture, &white].map(|p| rmse(p, &truth));
             println!("{name} {frame}: {own:.2e}, as a plain light {plain:.2e}");
             assert!(
-                own < 2e-3 && plain > 3.0 * own,
+                own < 6e-3 && plain > 3.0 * own,
                 "{name} {frame}: {own} {plain}"
             );
+            pictures.push(picture);
         }
         // One frame's fire is not another's.
-        let [first, later] =
-            ["light-frame=0", "light-frame=9"].map(|f| drawn(&scene, &["light-image=fire", f]));
-        assert!(first != later);
+        assert!(pictures[1] != pictures[2]);
     }
 }

@@ -268,6 +268,8 @@ pub(crate) enum OverlayKind {
     Silhouette,
     /// Sides of the shadow volumes
     Volumes,
+    /// Penumbra wedges, as the technique builds them
+    Wedges,
     /// The map of the environment with the fitted lights outlined
     EnvLights,
 }
@@ -281,6 +283,7 @@ impl OverlayKind {
             Self::Traffic => "traffic",
             Self::Silhouette => "silhouette",
             Self::Volumes => "volumes",
+            Self::Wedges => "wedges",
             Self::EnvLights => "env-lights",
         }
     }

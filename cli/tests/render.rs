@@ -164,6 +164,35 @@ fn pictures_have_the_size_asked_for() {
     }
 }
 
+/// Wedges of every construction; a technique without any says so.
+#[test]
+fn wedges_are_drawn_as_the_technique_builds_them() {
+    let folder = Folder::new("wedges");
+    let orange = |given: &str| {
+        folder
+            .gnomon(&format!(
+                "render cylinder --size 120x80 --out a.png --overlay wedges --technique {given}"
+            ))
+            .fine();
+        let picture = image::open(folder.path("a-wedges.png"))
+            .unwrap()
+            .into_rgb8();
+        let strong = |p: &&image::Rgb<u8>| p[0] > p[2].saturating_add(25);
+        picture.pixels().filter(strong).count()
+    };
+    let exact = orange("soft-shadow-volumes");
+    let sphere = orange("soft-shadow-volumes --set wedge=paper3");
+    let linked = orange("penumbra-wedges");
+    assert!(exact > 300 && linked > 300, "{exact} {linked}");
+    assert!(sphere > exact, "{sphere} {exact}");
+    let none = "render cylinder --overlay wedges --size 16x16 --out b.png";
+    folder.gnomon(none).refused(&[
+        "shadow-volumes builds no penumbra wedges",
+        "soft-shadow-volumes",
+    ]);
+    assert!(!folder.path("b.png").exists());
+}
+
 #[test]
 fn one_pixel_is_a_picture() {
     let folder = Folder::new("pixel");

@@ -4,10 +4,13 @@
 //! `cargo run --release -p gnomon-pipeline --example breakdown -- FOLDER [SCENE]`
 //!
 //! writes `breakdown.csv` and `breakdown.svg` into FOLDER; SCENE is
-//! `parallel-plates` unless given, where geometry is no source of error. Truth is that of the same positions, rounded to f32 where they
-//! come to lie, so what is measured is the technique and not the model.
+//! `parallel-plates` unless given, where geometry is no source of error. Truth is that
+//! of the same positions, rounded to f32 where they come to lie, so what is measured is
+//! the technique and not the model.
 
 #![allow(clippy::print_stdout, reason = "a measurement prints")]
+
+mod plot;
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -19,6 +22,7 @@ use gnomon_pipeline::metrics::visibility::VisibilityError;
 use gnomon_pipeline::render::{RenderSettings, render};
 use gnomon_pipeline::scene::{Scene, builtin};
 use gnomon_pipeline::technique::{Params, Technique, techniques};
+use plot::{Axis, Plot, Series};
 
 const SIZE: [u32; 2] = [240, 160];
 
@@ -45,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let write = |name: &str, text: String| std::fs::write(Path::new(&folder).join(name), text);
     write("breakdown.csv", csv(&curves))?;
-    write("breakdown.svg", svg(&curves))?;
+    write("breakdown.svg", plot::svg(&curves.each_ref().map(plot_of)))?;
     Ok(())
 }
 
@@ -130,111 +134,15 @@ fn csv(curves: &[Curve]) -> String {
     text
 }
 
-/// Plot of one curve after the other, both axes logarithmic.
-fn svg(curves: &[Curve]) -> String {
-    let (width, height) = (860, 360 * curves.len() + 20);
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"sans-serif\" font-size=\"12\">\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n"
-    );
-    for (k, curve) in curves.iter().enumerate() {
-        plot(&mut text, curve, 360.0 * k as f64);
-    }
-    text + "</svg>\n"
-}
-
-/// Left, right, top and bottom of a plot's frame.
-const FRAME: [f64; 4] = [70.0, 590.0, 40.0, 310.0];
-
-fn plot(text: &mut String, curve: &Curve, down: f64) {
-    let [left, right, top, bottom] = [FRAME[0], FRAME[1], FRAME[2] + down, FRAME[3] + down];
-    let decade = libm::log10;
-    let value = |at: usize| curve.points.get(at).map_or(1.0, |p| p.0);
-    let (low, high) = (decade(value(0)), decade(value(curve.points.len() - 1)));
-    let x = |v: f64| left + (right - left) * (decade(v) - low) / (high - low);
-    let y = |e: f64| top - (bottom - top) * decade(e.max(FLOOR)) / -decade(FLOOR);
-    let _ = writeln!(
-        text,
-        "<text x=\"{left}\" y=\"{}\" font-size=\"14\">RMSE of visibility over {}</text>",
-        top - 14.0,
-        curve.variable
-    );
-    for exponent in (decade(FLOOR) as i32)..=0 {
-        let at = y(libm::pow(10.0, f64::from(exponent)));
-        let _ = writeln!(
-            text,
-            "<path d=\"M{left} {at:.1}H{right}\" stroke=\"#ddd\"/>\
-             <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">1e{exponent}</text>",
-            left - 6.0,
-            at + 4.0
-        );
-    }
-    let step = if high - low > 20.0 { 6 } else { 1 };
-    for exponent in (low.ceil() as i32..=high as i32).step_by(step) {
-        let at = x(libm::pow(10.0, f64::from(exponent)));
-        let _ = writeln!(
-            text,
-            "<path d=\"M{at:.1} {top}V{bottom}\" stroke=\"#ddd\"/>\
-             <text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">1e{exponent}</text>",
-            bottom + 18.0
-        );
-    }
-    for (k, technique) in techniques().iter().enumerate() {
-        let place = [x(value(0)), right + 16.0, top + 18.0 * k as f64 + 10.0];
-        line(text, curve, k, &x, &y);
-        let _ = writeln!(
-            text,
-            "<path d=\"M{} {}h18\" stroke=\"{}\" stroke-width=\"2\"{}/>\
-             <text x=\"{}\" y=\"{}\">{}</text>",
-            place[1],
-            place[2] - 4.0,
-            colour(k),
-            dashes(k),
-            place[1] + 24.0,
-            place[2],
-            technique.name()
-        );
-    }
-}
-
-/// One technique's line, interrupted where it gives no picture.
-fn line(
-    text: &mut String,
-    curve: &Curve,
-    k: usize,
-    x: &impl Fn(f64) -> f64,
-    y: &impl Fn(f64) -> f64,
-) {
-    let mut path = String::new();
-    let mut pen_down = false;
-    for (value, _, errors) in &curve.points {
-        if let Some(error) = errors[k] {
-            let command = if pen_down { 'L' } else { 'M' };
-            let _ = write!(path, "{command}{:.1} {:.1}", x(*value), y(error));
-        }
-        pen_down = errors[k].is_some();
-    }
-    let _ = writeln!(
-        text,
-        "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>",
-        colour(k),
-        dashes(k)
-    );
-}
-
-/// Colours that colour-blind people can tell apart (Okabe and Ito, 2008).
-fn colour(k: usize) -> &'static str {
-    const COLOURS: [&str; 8] = [
-        "#000000", "#e69f00", "#56b4e9", "#009e73", "#0072b2", "#d55e00", "#cc79a7", "#999999",
-    ];
-    COLOURS[k % COLOURS.len()]
-}
-
-/// Every other line is dashed: where two lie on each other, both are seen.
-fn dashes(k: usize) -> &'static str {
-    match k % 2 {
-        0 => "",
-        _ => " stroke-dasharray=\"6 4\"",
+fn plot_of(curve: &Curve) -> Plot {
+    let series = |k: usize| Series {
+        name: techniques()[k].name().to_owned(),
+        points: curve.points.iter().map(|p| (p.0, p.2[k])).collect(),
+    };
+    Plot {
+        title: format!("RMSE of visibility over {}", curve.variable),
+        axis: Axis::Decades,
+        floor: FLOOR,
+        series: (0..techniques().len()).map(series).collect(),
     }
 }

@@ -58,7 +58,7 @@ impl FromStr for CasterPolicy {
 #[error(
     "object '{object}' is not closed and cannot cast a shadow volume: {report}. \
      Close the mesh, let it only receive, or ask for the generalised silhouette \
-     with --set open-casters=generalised"
+     with --set open-casters=generalised (compare: --set TECHNIQUE.open-casters=generalised)"
 )]
 pub struct RefusedCaster {
     /// Name of the object.

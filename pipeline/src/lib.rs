@@ -74,3 +74,5 @@ pub mod volume;
 pub mod wedge;
 pub mod wedge_work;
 pub mod winding;
+
+pub use techniques::scene_wedges;

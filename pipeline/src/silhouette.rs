@@ -254,30 +254,46 @@ mod tests {
         );
     }
 
-    /// A cone of triangles round an apex whose rim alternates up and down `n`
-    /// times: seen from the light on the axis side, the apex gets degree 2n.
-    fn saddle_degree(folds: usize) -> u32 {
+    /// A closed body: a cone of triangles round an apex whose rim goes up and down
+    /// `folds` times, and a point far below.
+    fn folded_cone(folds: u32) -> Mesh {
         let rim = 2 * folds;
-        let mut positions = vec![[0.0; 3]];
+        let mut positions = vec![[0.0; 3], [0.0, -20.0, 0.0]];
         for k in 0..rim {
-            let angle = std::f64::consts::TAU * k as f64 / rim as f64;
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(rim);
             let y = if k % 2 == 0 { 4.0 } else { -4.0 };
             positions.push([libm::cos(angle) as f32, y, libm::sin(angle) as f32]);
         }
-        let triangles = (0..rim as u32)
-            .map(|k| [0, 1 + (k + 1) % rim as u32, 1 + k])
-            .collect();
-        let mesh = soup(triangles, positions);
-        // Light low, off to the side: every fold hides one of its two faces.
-        let facing: Vec<bool> = (0..rim).map(|k| k % 2 == 0).collect();
-        let s = silhouette(&mesh, &Orientation::closed(&facing));
-        degrees(&s, mesh.positions().len())[0].1
+        let triangles = (0..rim).flat_map(|k| {
+            let (a, b) = (2 + k, 2 + (k + 1) % rim);
+            [[0, b, a], [1, a, b]]
+        });
+        soup(triangles.collect(), positions)
     }
 
+    /// A light aside sees each fold's two faces from different sides: a vertex of
+    /// each even degree, on closed bodies, with facing from the light.
     #[test]
     fn vertices_of_degree_two_to_eight_exist() {
-        for folds in 1..=4 {
-            assert_eq!(saddle_degree(folds), 2 * folds as u32);
+        let mut seen = std::collections::BTreeSet::new();
+        for folds in 2..=5 {
+            let mesh = folded_cone(folds);
+            let adjacency = EdgeAdjacency::new(mesh.triangles());
+            assert!(adjacency.closedness(&mesh).is_closed());
+            for light in [DVec3::new(60.0, 1.0, 0.3), DVec3::new(40.0, 30.0, 9.0)] {
+                let facing = light_facing(&mesh, HardLight::Point(light));
+                let s = silhouette(&mesh, &Orientation::closed(&facing));
+                let degrees = degrees(&s, mesh.positions().len());
+                assert!(
+                    degrees
+                        .iter()
+                        .all(|(balance, d)| *balance == 0 && d % 2 == 0)
+                );
+                seen.insert(degrees[0].1);
+            }
+        }
+        for degree in [2, 4, 6, 8] {
+            assert!(seen.contains(&degree), "{degree} is not among {seen:?}");
         }
     }
 

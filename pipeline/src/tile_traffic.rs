@@ -17,7 +17,8 @@ use std::collections::BTreeMap;
 use gnomon_raster::{
     AccessObserver, BlockAccess, Counters, Gpu, GpuConfig, SubmitReport, Subresource,
 };
-use gnomon_shaders::penumbra::inside::{Culling, Part, TileTest, WedgeInside};
+use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, Part, TileTest, WedgeInside};
+use gnomon_shaders::penumbra::plane::ScreenPlane;
 
 use crate::render::RenderError;
 use crate::scene::Scene;
@@ -35,6 +36,9 @@ pub struct TileTraffic {
     pub culled: u64,
     /// Of these, wholly inside the wedge: their pixels need no test.
     pub accepted: u64,
+    /// Of these, pairs whose penumbra the wedge's range of depth alone rejects, so
+    /// that its planes need no test; 0 where the range is not tested.
+    pub quickly_rejected: u64,
     /// zmin and zmax values read by these tests.
     pub bound_reads: u64,
     /// Pixels that the triangles cover.
@@ -151,10 +155,13 @@ impl Covered {
         let mut traffic = TileTraffic::default();
         for ((triangle, tile), count) in pixels {
             let shader = &draws[triangle.0 as usize].shader;
-            let class = classify(shader, bounds.of(tile, &shader.tiles));
+            let space = bounds.of(tile, &shader.tiles);
+            let class = classify(shader, space);
             traffic.fragments += count;
             if shader.tiles.culling != Culling::None {
                 traffic.tested += 1;
+                let quick = space.is_some_and(|t| beyond_any(&shader.tiles.range, &t));
+                traffic.quickly_rejected += u64::from(quick);
                 traffic.culled += u64::from(class == TileClass::Culled);
                 traffic.accepted += u64::from(class == TileClass::Accepted);
                 let both = shader.tiles.culling == Culling::ZminZmax;
@@ -263,11 +270,11 @@ fn classify(shader: &WedgeInside, tile: Option<[[f32; 2]; 3]>) -> TileClass {
     } else {
         front[0] >= 0.0
     };
-    let beyond = |(plane, margin): &(gnomon_shaders::penumbra::plane::ScreenPlane, f32)| {
-        plane.range_in(&tile)[1] < -margin
-    };
-    let outside = front[1] < 0.0 || back[1] < 0.0 || first[1] < 0.0 || second[1] <= 0.0;
-    let penumbra_culled = outside || shader.tiles.axes.iter().any(beyond);
+    let by_planes = shader.tiles.outside == OutsideTest::Planes
+        && (front[1] < 0.0 || back[1] < 0.0 || first[1] < 0.0 || second[1] <= 0.0);
+    let penumbra_culled = by_planes
+        || beyond_any(&shader.tiles.range, &tile)
+        || beyond_any(&shader.tiles.axes, &tile);
     let inside = front[0] >= 0.0 && back[0] >= 0.0 && first[0] >= 0.0 && second[0] > 0.0;
     let culled = match shader.part {
         Part::Umbra => umbra_culled,
@@ -279,6 +286,12 @@ fn classify(shader: &WedgeInside, tile: Option<[[f32; 2]; 3]>) -> TileClass {
         false if inside && shader.part != Part::Umbra => TileClass::Accepted,
         false => TileClass::Crossing,
     }
+}
+
+/// Whether the box lies beyond one of the planes by more than its margin.
+fn beyond_any(planes: &[(ScreenPlane, f32)], tile: &[[f32; 2]; 3]) -> bool {
+    let beyond = |(plane, margin): &(ScreenPlane, f32)| plane.range_in(tile)[1] < -margin;
+    planes.iter().any(beyond)
 }
 
 #[cfg(test)]

@@ -10,14 +10,16 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use gnomon_pipeline::caster::Caster;
+use gnomon_pipeline::comparison::{Reference, ReferenceKind};
 use gnomon_pipeline::light::{HardLight, Light, LightShape};
 use gnomon_pipeline::mesh::{Mesh, Shading};
+use gnomon_pipeline::metrics::visibility::VisibilityError;
 use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth, PixelTruth};
 use gnomon_pipeline::render::{RenderError, RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Camera, Material, Object, Scene};
 use gnomon_pipeline::shape;
 use gnomon_pipeline::silhouette::light_facing;
-use gnomon_pipeline::technique::{self, Params, TechniqueError};
+use gnomon_pipeline::technique::{self, Params, TechniqueError, techniques};
 use gnomon_raster::GpuConfig;
 
 const SIZE: [u32; 2] = [160, 128];
@@ -291,4 +293,71 @@ fn negative_control_a_missing_triangle_is_noticed() {
         let noticed = differ.iter().filter(|d| **d > 20).count();
         assert!(2 * noticed >= differ.len(), "{what}: {differ:?}");
     }
+}
+
+/// No technique with volumes draws an open cylinder unless it is asked to.
+#[test]
+fn every_technique_with_volumes_refuses_an_open_cylinder() {
+    let scene = scenes(&open_cylinder()).remove(0);
+    let mut refusing = 0;
+    for technique in techniques() {
+        if technique.params().iter().all(|p| p.name != "open-casters") {
+            continue;
+        }
+        let settings = RenderSettings {
+            size: [32, 24],
+            ..RenderSettings::default()
+        };
+        let refused = render(&scene, *technique, &Params::defaults(*technique), &settings);
+        let message = refused.unwrap_err().to_string();
+        let name = technique.name();
+        assert!(
+            message.contains("not closed") && message.contains("open-casters=generalised"),
+            "{name}: {message}"
+        );
+        let asked = Params::parse(*technique, ["open-casters=generalised"]).unwrap();
+        render(&scene, *technique, &asked, &settings).unwrap();
+        refusing += 1;
+    }
+    assert!(refusing >= 6, "{refusing}");
+}
+
+/// RMSE of a soft shadow of one open caster over a floor.
+fn soft_rmse(caster: &Mesh) -> f64 {
+    let mut scene = scenes(caster).remove(0);
+    scene.lights = vec![Light::horizontal_square(DVec3::new(0.4, 3.5, 0.2), 0.8)];
+    let technique = technique::find("soft-shadow-volumes").unwrap();
+    let params = Params::parse(technique, ["open-casters=generalised"]).unwrap();
+    let settings = RenderSettings {
+        size: SIZE,
+        ..RenderSettings::default()
+    };
+    let drawn = render(&scene, technique, &params, &settings).unwrap();
+    let truth = Reference::new(&scene, 0, SIZE, ReferenceKind::Exact, None, &|| ()).unwrap();
+    let truth = truth.under(&drawn.depth).unwrap().truth;
+    let known = drawn.visibility.iter().zip(&truth.values);
+    let seen: Vec<f32> = known
+        .map(|(v, t)| if t.is_nan() { f32::NAN } else { *v })
+        .collect();
+    let error = VisibilityError::measure(&truth, SIZE, &seen).unwrap();
+    eprintln!("{} triangles: {:?}", caster.triangles().len(), error.all);
+    error.all.unwrap().rmse
+}
+
+/// A flat sheet has one silhouette for all of the light: its soft shadow is exact,
+/// whichever way its triangles wind. Of an open tube both walls count, as two casters
+/// would.
+#[test]
+fn an_open_sheet_has_the_soft_shadow_of_the_truth() {
+    let corners = [[-0.6, -0.5], [0.7, -0.4], [0.6, 0.5], [-0.5, 0.4]];
+    let flat = corners.map(|[x, z]| [x, 1.0, z]);
+    for triangles in [
+        [[0, 2, 1], [0, 3, 2]],
+        [[0, 1, 2], [0, 2, 3]],
+        [[0, 2, 1], [0, 2, 3]],
+    ] {
+        let sheet = mesh(&flat, &triangles);
+        assert!(soft_rmse(&sheet) < 1e-5);
+    }
+    assert!(soft_rmse(&open_cylinder()) > 1e-3, "walls overlap");
 }

@@ -255,7 +255,13 @@ fn the_buffer_does_not_depend_on_culling_passes_tiles_or_axes() {
                 ways.push(vec!["culling=zminmax", tile]);
             }
             ways.push(vec!["culling=zmax", "tile=8", "passes=three"]);
-            ways.push(vec!["culling=zminmax", "tile=4", "separating-axis=full"]);
+            for axes in [
+                "separating-axis=full",
+                "separating-axis=range-faces",
+                "separating-axis=range",
+            ] {
+                ways.push(vec!["culling=zminmax", "tile=4", axes]);
+            }
             ways.push(vec![
                 "culling=zminmax",
                 "tile=16",
@@ -363,7 +369,17 @@ fn culling_saves_reads_and_no_writes_and_the_model_counts_what_the_gpu_reads() {
             let zmax = run("culling=zmax", faces);
             let both = run("culling=zminmax", faces);
             let full = run("culling=zminmax", "separating-axis=full");
+            let quick = run("culling=zminmax", "separating-axis=range-faces");
+            let alone = run("culling=zminmax", "separating-axis=range");
             eprintln!("{name}, {passes}:\n  {none:?}\n  {zmax:?}\n  {both:?}\n  {full:?}");
+            eprintln!("  quick {quick:?}\n  alone {alone:?}");
+            // The quick test saves tests of planes, and hardly a read; alone, few reads.
+            assert_eq!((both.quickly_rejected, quick.tested), (0, both.tested));
+            assert!(quick.quickly_rejected > 0, "{name}");
+            assert_eq!(quick.quickly_rejected, alone.quickly_rejected, "{name}");
+            assert!(quick.culled >= both.culled && quick.culled <= full.culled);
+            assert!(both.depth_reads < alone.depth_reads, "{name}");
+            assert!(alone.depth_reads < none.depth_reads, "{name}");
             let reads = [none, zmax, both, full].map(|t| t.depth_reads);
             assert!(reads.is_sorted_by(|a, b| a >= b), "{name}: {reads:?}");
             assert!(reads[2] * 10 < reads[0] * 9, "{name}: {reads:?}");

@@ -7,10 +7,12 @@ mod silhouette;
 mod stencil;
 mod traffic;
 mod volumes;
+mod wedges;
 
 use gnomon_pipeline::heat::Heat;
 use gnomon_pipeline::render::Rendered;
 use gnomon_pipeline::scene::Scene;
+use gnomon_pipeline::scene_wedges::SceneWedges;
 use gnomon_pipeline::technique::Params;
 
 use crate::args::OverlayKind;
@@ -24,6 +26,8 @@ pub(crate) struct Source<'a> {
     pub(crate) done: &'a Rendered,
     /// Recorded only where [`needs_heat`] says so.
     pub(crate) heat: Option<&'a Heat>,
+    /// Built only where they are drawn.
+    pub(crate) wedges: Option<&'a SceneWedges>,
 }
 
 impl Source<'_> {
@@ -55,6 +59,7 @@ pub(crate) fn draw(kind: OverlayKind, source: &Source<'_>) -> Picture {
         OverlayKind::Traffic => traffic::draw(source),
         OverlayKind::Silhouette => silhouette::draw(source),
         OverlayKind::Volumes => volumes::draw(source),
+        OverlayKind::Wedges => wedges::draw(source),
         OverlayKind::EnvLights => env_lights::draw(source),
     }
 }

@@ -117,6 +117,7 @@ impl Demo<'_> {
             params: &shot.params,
             done: &shot.done,
             heat: Some(&heat),
+            wedges: None,
         };
         for (kind, caption) in OVERLAYS {
             progress.doing(format!("drawing {}", kind.name()));

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use gnomon_pipeline::heat::{self, Heat};
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Scene, SceneSource};
-use gnomon_pipeline::technique::{Params, Technique, find};
+use gnomon_pipeline::scene_wedges::{self, SceneWedges};
+use gnomon_pipeline::technique::{Params, Technique, find, techniques};
 use gnomon_pipeline::wedge_work::WedgeWork;
 
 use crate::args::{OverlayKind, RenderArgs};
@@ -74,6 +75,7 @@ impl Job {
         out: Option<PathBuf>,
     ) -> Result<Self, CliError> {
         check_overlays(args, &scene)?;
+        check_wedges(args, technique, &params)?;
         let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
         let out = out.unwrap_or_else(|| default_out(&scene.name, technique.name()));
         files::check_target(&out)?;
@@ -100,6 +102,17 @@ impl Job {
             repeat: self.settings.repeat,
         };
         RenderDocument::new(of, done, files)
+    }
+
+    fn wedges(&self) -> Result<Option<SceneWedges>, CliError> {
+        if !self.overlays.iter().any(|(k, _)| *k == OverlayKind::Wedges) {
+            return Ok(None);
+        }
+        Ok(scene_wedges::of_scene(
+            &self.scene,
+            self.technique,
+            &self.params,
+        )?)
     }
 
     fn heat(&self) -> Result<Option<Heat>, CliError> {
@@ -135,6 +148,32 @@ fn check_overlays(args: &RenderArgs, scene: &Scene) -> Result<(), CliError> {
         flag: "--overlay",
         value: OverlayKind::EnvLights.name().to_owned(),
         valid: "the scene has no environment; give one with --env MAP".to_owned(),
+    })
+}
+
+/// Refuses the wedges of a technique that has none.
+fn check_wedges(
+    args: &RenderArgs,
+    technique: &dyn Technique,
+    params: &Params,
+) -> Result<(), CliError> {
+    let wanted = args.overlay.contains(&OverlayKind::Wedges);
+    if !wanted || scene_wedges::kind(technique, params).is_some() {
+        return Ok(());
+    }
+    let with_wedges = techniques().iter().filter(|t| {
+        let params = Params::defaults(**t);
+        scene_wedges::kind(**t, &params).is_some()
+    });
+    let names: Vec<&str> = with_wedges.map(|t| t.name()).collect();
+    Err(CliError::Flag {
+        flag: "--overlay",
+        value: OverlayKind::Wedges.name().to_owned(),
+        valid: format!(
+            "{} builds no penumbra wedges; those that do: {}",
+            technique.name(),
+            names.join(", ")
+        ),
     })
 }
 
@@ -184,11 +223,13 @@ fn write(
     }
     progress.step();
     let heat = job.heat()?;
+    let wedges = job.wedges()?;
     let source = overlay::Source {
         scene: &job.scene,
         params: &job.params,
         done,
         heat: heat.as_ref(),
+        wedges: wedges.as_ref(),
     };
     for (kind, path) in &job.overlays {
         progress.doing(format!("drawing {}", kind.name()));

@@ -22,6 +22,7 @@ mod lab;
 mod overlaps;
 mod paper1;
 mod paper2;
+mod paper2_range;
 mod paper2_tiles;
 mod paper3;
 mod paper3_scaling;
@@ -118,10 +119,11 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 6] = [
+    let papers: [&'static [Claim]; 7] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
+        paper2_range::CLAIMS,
         paper3::CLAIMS,
         paper4::CLAIMS,
         paper5::CLAIMS,

@@ -67,16 +67,8 @@ fn even_degree(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         }
     }
     let seen_in_scenes = (1..degrees.0.len()).filter(|d| degrees.of(*d) > 0).max();
-    for folds in 1..=4 {
-        let mesh = folded_cone(folds)?;
-        let facing: Vec<bool> = (0..2 * folds).map(|k| k % 2 == 0).collect();
-        let adjacency = EdgeAdjacency::new(mesh.triangles());
-        let silhouette = Silhouette::new(&mesh, &adjacency, &Orientation::closed(&facing));
-        // The rim of the cone is open: only its apex is inside a closed surface.
-        let of_apex = silhouette.edges.iter().flatten().filter(|v| **v == 0);
-        let degree = of_apex.count();
-        degrees.0.resize(degrees.0.len().max(degree + 1), 0);
-        degrees.0[degree] += 1;
+    for folds in 2..=5 {
+        seen_from_all_sides(&folded_cone(folds)?, 64, &mut degrees);
     }
     let mut measures = vec![Measure::new(
         "vertices of odd degree",
@@ -99,8 +91,8 @@ fn even_degree(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         Unit::Count,
     ));
     Ok(Finding {
-        scene: "casters of creature, columns, spheres, peer-c and overlap, from 64 lights each; \
-            cones of 1 to 4 folds"
+        scene: "casters of creature, columns, spheres, peer-c and overlap, and closed cones of \
+            2 to 5 folds, from 64 lights each"
             .to_owned(),
         counted: "silhouette edges at each vertex, facing decided once a triangle".to_owned(),
         measures,

@@ -96,8 +96,9 @@ pub(super) fn with_lights_scaled(mut scene: Scene, factor: f64) -> Scene {
     scene
 }
 
-/// Triangles round an apex whose rim goes up and down `folds` times; seen from far
-/// along x half of them face, and the apex has 2 `folds` silhouette edges.
+/// A closed body: triangles round an apex whose rim goes up and down `folds` times,
+/// and a point far below. Lights aside see the two faces of a fold from different
+/// sides, so that the apex has many silhouette edges.
 pub(super) fn folded_cone(folds: u32) -> Result<Mesh, ReproduceError> {
     let rim = 2 * folds;
     let at = |k: u32| {
@@ -105,10 +106,14 @@ pub(super) fn folded_cone(folds: u32) -> Result<Mesh, ReproduceError> {
         let y = if k.is_multiple_of(2) { 4.0 } else { -4.0 };
         DVec3::new(libm::cos(angle), y, libm::sin(angle))
     };
-    let positions = std::iter::once(DVec3::ZERO).chain((0..rim).map(at));
+    let tips = [DVec3::ZERO, DVec3::NEG_Y * 20.0];
+    let faces = (0..rim).flat_map(|k| {
+        let (here, next) = (2 + k, 2 + (k + 1) % rim);
+        [[0, next, here], [1, here, next]]
+    });
     Ok(Shape {
-        positions: positions.collect(),
-        triangles: (0..rim).map(|k| [0, 1 + (k + 1) % rim, 1 + k]).collect(),
+        positions: tips.into_iter().chain((0..rim).map(at)).collect(),
+        triangles: faces.collect(),
     }
     .into_mesh(Shading::Flat)?)
 }
@@ -117,6 +122,15 @@ pub(super) fn folded_cone(folds: u32) -> Result<Mesh, ReproduceError> {
 mod tests {
     use super::*;
     use crate::adjacency::EdgeAdjacency;
+
+    #[test]
+    fn folded_cones_are_closed() {
+        for folds in 2..=5 {
+            let mesh = folded_cone(folds).unwrap();
+            let report = EdgeAdjacency::new(mesh.triangles()).closedness(&mesh);
+            assert!(report.is_closed(), "{folds}: {report}");
+        }
+    }
 
     #[test]
     fn casters_are_closed_and_face_outwards() {

@@ -25,3 +25,40 @@ pub fn bevelled_plate(half: f64, y: f64, thickness: f64, slope: f64) -> Shape {
             .collect(),
     }
 }
+
+/// The same body with each of its edges round the plate in `pieces` collinear ones,
+/// and a vertex in the middle of either face.
+pub fn bevelled_plate_in_pieces(
+    half: f64,
+    y: f64,
+    thickness: f64,
+    slope: f64,
+    pieces: u32,
+) -> Shape {
+    let ring = |h: f64, y: f64| {
+        let corners = [(-h, -h), (h, -h), (h, h), (-h, h)].map(|(x, z)| DVec3::new(x, y, z));
+        let side = move |k: usize| {
+            let (from, to) = (corners[k], corners[(k + 1) % 4]);
+            (0..pieces).map(move |i| from + (to - from) * (f64::from(i) / f64::from(pieces)))
+        };
+        (0..4).flat_map(side).collect::<Vec<DVec3>>()
+    };
+    let mut positions = ring(half, y);
+    let n = positions.len() as u32;
+    positions.extend(ring(half - slope * thickness, y - thickness));
+    positions.extend([DVec3::Y * y, DVec3::Y * (y - thickness)]);
+    let (top, bottom) = (2 * n, 2 * n + 1);
+    let round = (0..n).flat_map(|k| {
+        let m = (k + 1) % n;
+        [
+            [top, m, k],
+            [bottom, n + k, n + m],
+            [k, m, n + m],
+            [k, n + m, n + k],
+        ]
+    });
+    Shape {
+        triangles: round.collect(),
+        positions,
+    }
+}

@@ -15,7 +15,7 @@ mod plane;
 mod terrain;
 mod torus_knot;
 
-pub use bevelled_plate::bevelled_plate;
+pub use bevelled_plate::{bevelled_plate, bevelled_plate_in_pieces};
 pub use capsule::capsule;
 pub use creature::{CREATURE_PARTS, creature, placed_creature};
 pub use cuboid::cuboid;
@@ -137,6 +137,7 @@ mod tests {
         ));
         check_closed_and_outward(torus_knot(1, 0, 1.0, 0.0, 0.3, 24, 12, DVec3::ZERO));
         check_closed_and_outward(bevelled_plate(0.3, 2.0, 0.01, 1.5));
+        check_closed_and_outward(bevelled_plate_in_pieces(0.3, 2.0, 0.01, 1.5, 5));
         creature(0.7).into_iter().for_each(check_closed_and_outward);
         check_closed_and_outward(torus_knot(2, 3, 1.0, 0.4, 0.18, 64, 8, DVec3::ZERO));
     }

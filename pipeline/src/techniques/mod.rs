@@ -16,6 +16,7 @@ mod penumbra;
 mod penumbra_wedges;
 pub(crate) mod penumbra_wedges_restructured;
 mod sampled_shadow_volumes;
+pub mod scene_wedges;
 mod shadow_map;
 mod shadow_maps_n;
 mod shadow_volumes;

@@ -38,9 +38,23 @@ pub struct TileTest {
     pub shift: u32,
     /// Width and height of the image in pixels.
     pub size: [u32; 2],
-    /// Planes of further separating axes, positive inside, each with the distance
-    /// beyond it that counts as surely outside.
+    /// Which tests tell that a tile is out of the wedge's reach.
+    pub outside: OutsideTest,
+    /// The wedge's range of depth as planes, for the quick rejection test; each with
+    /// the distance beyond it that counts as surely outside, as in `axes`.
+    pub range: Vec<(ScreenPlane, f32)>,
+    /// Planes of further separating axes, positive inside.
     pub axes: Vec<(ScreenPlane, f32)>,
+}
+
+/// How a tile is found to be outside a wedge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OutsideTest {
+    /// By the wedge's planes, and by whatever `range` and `axes` hold.
+    #[default]
+    Planes,
+    /// By `range` and `axes` alone.
+    WithoutPlanes,
 }
 
 /// What a draw adds.
@@ -182,11 +196,14 @@ impl WedgeInside {
                 };
         }
         if self.has_penumbra() {
-            let mut outside = front.greatest(&tile).lt(zero)
-                | back.greatest(&tile).lt(zero)
-                | first.greatest(&tile).lt(zero)
-                | second.greatest(&tile).le(zero);
-            for (plane, margin) in &self.tiles.axes {
+            let mut outside = nothing;
+            if self.tiles.outside == OutsideTest::Planes {
+                outside = front.greatest(&tile).lt(zero)
+                    | back.greatest(&tile).lt(zero)
+                    | first.greatest(&tile).lt(zero)
+                    | second.greatest(&tile).le(zero);
+            }
+            for (plane, margin) in self.tiles.range.iter().chain(&self.tiles.axes) {
                 outside = outside | plane.greatest(&tile).lt(F32::splat(l, -margin));
             }
             class.penumbra_culled = empty | outside;

@@ -5,7 +5,8 @@
 //! wedge's edge and parallel to the box's: of two of the wedge's planes, the
 //! non-negative combination in which that coordinate cancels. So these planes
 //! hold the whole wedge, wherever it is clipped. The box's own axes across the
-//! image need no test, since only tiles under the wedge are drawn; depth does.
+//! image need no test, since only tiles under the wedge are drawn; depth does, by
+//! the wedge's range of it: the paper's quick rejection test.
 
 use gnomon_shaders::penumbra::plane::ScreenPlane;
 
@@ -17,8 +18,8 @@ use crate::wedge::paper1::LinkedWedge;
 /// counts as surely outside. Far above the rounding of plane and point.
 const MARGIN: f64 = 1e-5;
 
-/// Planes that hold all of the wedge, each with its margin.
-pub(in crate::techniques) fn further(
+/// Planes through edges that hold all of the wedge, each with its margin.
+pub(in crate::techniques) fn of_edges(
     screen: &Screen,
     view: &View,
     wedge: &LinkedWedge,
@@ -33,11 +34,25 @@ pub(in crate::techniques) fn further(
             }
         }
     }
-    out.extend(depth_range(view, wedge).into_iter().flatten());
+    with_margins(out, size)
+}
+
+/// The wedge's range of depth as planes, each with its margin.
+pub(in crate::techniques) fn of_depth(
+    view: &View,
+    wedge: &LinkedWedge,
+    size: [u32; 2],
+) -> Vec<(ScreenPlane, f32)> {
+    with_margins(depth_range(view, wedge).into_iter().flatten(), size)
+}
+
+fn with_margins(
+    planes: impl IntoIterator<Item = [f64; 4]>,
+    size: [u32; 2],
+) -> Vec<(ScreenPlane, f32)> {
     let extent = [f64::from(size[0]), f64::from(size[1]), 1.0, 1.0];
-    out.into_iter()
-        .filter_map(|p| with_margin(p, extent))
-        .collect()
+    let planes = planes.into_iter();
+    planes.filter_map(|p| with_margin(p, extent)).collect()
 }
 
 /// The combination of two planes, with positive factors, without coordinate k.

@@ -189,8 +189,14 @@ impl Builder<'_> {
         let view = &self.draws.view;
         let interpolation = self.choices.interpolation;
         let mut tiles = self.choices.tiles.clone();
-        if let (Some(wedge), true) = (wedge, self.choices.all_axes && part != Part::Umbra) {
-            tiles.axes = axes::further(&self.screen, view, wedge, self.size);
+        if let Some(wedge) = wedge.filter(|_| part != Part::Umbra) {
+            let wanted = self.choices.axes;
+            if wanted.range {
+                tiles.range = axes::of_depth(view, wedge, self.size);
+            }
+            if wanted.edges {
+                tiles.axes = axes::of_edges(&self.screen, view, wedge, self.size);
+            }
         }
         let none = IntensityRates {
             back_over_front: [1.0; 2],

@@ -50,7 +50,7 @@ mod draws;
 mod list;
 
 use gnomon_raster::TextureId;
-use gnomon_shaders::penumbra::inside::{Culling, TileTest, WedgeInside};
+use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, TileTest, WedgeInside};
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
 use super::casters::{self, Examined, OPEN_CASTERS};
@@ -97,8 +97,9 @@ const TILE: ParamInfo = ParamInfo {
 const AXES: ParamInfo = ParamInfo {
     name: "separating-axis",
     default: "faces",
-    valid: "faces|full",
-    summary: "tiles against the wedge's planes, or against all separating axes; same bits",
+    valid: "faces|range-faces|range|full",
+    summary: "tiles against the wedge's planes, its range of depth first, that range alone, \
+              or all separating axes; same bits",
 };
 
 impl Technique for PenumbraWedgesRestructured {
@@ -211,12 +212,19 @@ pub(crate) fn build(
     })
 }
 
+/// Tests of tiles besides the wedge's planes.
+#[derive(Clone, Copy, Default)]
+struct Axes {
+    range: bool,
+    edges: bool,
+}
+
 /// What parameters decide.
 struct Choices {
     forced: Option<Method>,
     three: bool,
     tiles: TileTest,
-    all_axes: bool,
+    axes: Axes,
     interpolation: Interpolation,
 }
 
@@ -228,6 +236,7 @@ impl Choices {
             _ => Culling::ZminZmax,
         };
         let tile: u32 = params.get(TILE.name).parse().unwrap_or(8);
+        let axes = params.get(AXES.name);
         Self {
             forced: match params.get(METHOD.name) {
                 "zpass" => Some(Method::DepthPass),
@@ -239,9 +248,17 @@ impl Choices {
                 culling,
                 shift: tile.trailing_zeros(),
                 size,
-                axes: Vec::new(),
+                outside: if axes == "range" {
+                    OutsideTest::WithoutPlanes
+                } else {
+                    OutsideTest::Planes
+                },
+                ..TileTest::default()
             },
-            all_axes: params.get(AXES.name) == "full",
+            axes: Axes {
+                range: axes != "faces",
+                edges: axes == "full",
+            },
             interpolation: penumbra::interpolation(params),
         }
     }

@@ -148,6 +148,11 @@ fn area(polygon: &[DVec2]) -> f64 {
 mod tests {
     use super::*;
     use crate::coverage::square_share;
+    use crate::light::LightShape;
+    use crate::oracle::area::VisibilityImage;
+    use crate::render::{RenderSettings, render};
+    use crate::scene::{Scene, builtin};
+    use crate::technique::{self, Params};
 
     fn points() -> Vec<DVec2> {
         let at = |k: i32| f64::from(k) / 3.0 - 0.97;
@@ -190,5 +195,87 @@ mod tests {
                 .count(),
             16
         );
+    }
+
+    const SIZE: [u32; 2] = [96, 64];
+
+    /// Red visibility under an image, by the technique.
+    fn drawn(scene: &Scene, set: &[&str]) -> Vec<f32> {
+        let table = [
+            "texture-size=20",
+            "texture-filter=quadlinear",
+            "texture-centred=vertex",
+        ];
+        let technique = technique::find("soft-shadow-volumes").unwrap();
+        let params = Params::parse(technique, table.iter().chain(set).copied()).unwrap();
+        let settings = RenderSettings {
+            size: SIZE,
+            ..RenderSettings::default()
+        };
+        render(scene, technique, &params, &settings)
+            .unwrap()
+            .visibility
+    }
+
+    /// The same as the sum over cells, each a light of its own to the oracle.
+    fn summed(scene: &Scene, image: &LightImage) -> Vec<f64> {
+        let LightShape::Rectangle {
+            centre,
+            edge_u,
+            edge_v,
+        } = scene.lights[0].shape
+        else {
+            unreachable!()
+        };
+        let n = image.side as f64;
+        let total: f64 = image.cells.iter().map(|c| c[0]).sum();
+        let mut sum = vec![0.0; (SIZE[0] * SIZE[1]) as usize];
+        let cells = image.cells.iter().enumerate();
+        for (k, colour) in cells.filter(|(_, c)| c[0] > 0.0) {
+            let place = |i: usize| (i as f64 + 0.5) / n - 0.5;
+            let mut one = scene.clone();
+            one.lights[0].shape = LightShape::Rectangle {
+                centre: centre + edge_u * place(k % image.side) + edge_v * place(k / image.side),
+                edge_u: edge_u / n,
+                edge_v: edge_v / n,
+            };
+            let seen = VisibilityImage::of_scene(&one, 0, SIZE, &|| ()).unwrap();
+            for (to, v) in sum.iter_mut().zip(&seen.values) {
+                *to += v * colour[0] / total;
+            }
+        }
+        sum
+    }
+
+    fn rmse(picture: &[f32], truth: &[f64]) -> f64 {
+        let pairs = picture.iter().zip(truth);
+        let known = pairs.filter(|(v, t)| !v.is_nan() && !t.is_nan());
+        let off = known.map(|(v, t)| f64::from(*v) - t);
+        let squares: Vec<f64> = off.map(|d| d * d).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    }
+
+    /// Sixteen lights with black between them, and frames of a fire: visibility is the
+    /// mean of the cells' own, weighted by their red.
+    #[test]
+    fn an_image_is_the_sum_of_its_cells() {
+        let scene = builtin::build("parallel-plates").unwrap();
+        let fire = |frame: u32| (LightImage::fire(frame), format!("light-frame={frame}"));
+        let windows = (LightImage::windows(), "light-frame=0".to_owned());
+        let white = drawn(&scene, &["light-image=white"]);
+        let mut pictures = Vec::new();
+        for (name, (image, frame)) in [("windows", windows), ("fire", fire(0)), ("fire", fire(9))] {
+            let picture = drawn(&scene, &[&format!("light-image={name}"), &frame]);
+            let truth = summed(&scene, &image);
+            let [own, plain] = [&picture, &white].map(|p| rmse(p, &truth));
+            println!("{name} {frame}: {own:.2e}, as a plain light {plain:.2e}");
+            assert!(
+                own < 6e-3 && plain > 3.0 * own,
+                "{name} {frame}: {own} {plain}"
+            );
+            pictures.push(picture);
+        }
+        // One frame's fire is not another's.
+        assert!(pictures[1] != pictures[2]);
     }
 }

@@ -1,0 +1,172 @@
+//! Quads and wedges as passes.
+
+use gnomon_raster::shader::FragmentStage;
+use gnomon_raster::state::ColorTargetState;
+use gnomon_raster::{Draw, LoadOp, RenderPass, TextureBinding, TextureId};
+use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
+
+use super::buffers::Buffers;
+use crate::technique::{Params, Warning};
+use crate::techniques::casters::SKIP;
+use crate::techniques::passes::{Targets, View};
+use crate::techniques::soft::count::Counting;
+use crate::techniques::soft::covering::Covering;
+use crate::techniques::soft::edges::Silhouettes;
+use crate::techniques::soft::light::SoftLight;
+use crate::techniques::soft::wedges::{
+    AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
+};
+use crate::techniques::visibility::{Positions, attachment, binding};
+use crate::wedge::{Wedge, WedgeStatistics};
+use crate::wedge_work::COVERAGE_DRAW;
+
+/// Quads and wedges of one light.
+pub(super) struct Volumes<'a> {
+    pub(super) view: &'a View,
+    pub(super) targets: &'a Targets,
+    pub(super) positions: Positions,
+    pub(super) buffers: &'a Buffers,
+    pub(super) light: &'a SoftLight,
+    pub(super) params: &'a Params,
+    pub(super) covering: Covering,
+}
+
+impl Volumes<'_> {
+    /// Pass 1: the hard shadow count.
+    pub(super) fn count_pass(&self, label: String, silhouettes: &Silhouettes) -> RenderPass {
+        let eight_bits = self.buffers.six_bits.is_some();
+        let to = if eight_bits {
+            CountTo::Alpha
+        } else {
+            CountTo::Visibility
+        };
+        let clear = if eight_bits { [0.0; 4] } else { [1.0; 4] };
+        let counting = Counting {
+            view: self.view,
+            positions: self.positions,
+            centre: self.light.centre,
+            to,
+        };
+        let targets = self.buffers.targets().into_iter();
+        RenderPass {
+            label,
+            color: targets
+                .map(|t| attachment(t, LoadOp::Clear(clear)))
+                .collect(),
+            depth_stencil: None,
+            draws: counting.draws(silhouettes),
+        }
+    }
+
+    /// Pass 2: one wedge after the other; copying back, two passes for each.
+    pub(super) fn wedge_passes(
+        &mut self,
+        label: &str,
+        silhouettes: &Silhouettes,
+        warnings: &mut Vec<Warning>,
+    ) -> Vec<RenderPass> {
+        let construction = construction(self.params);
+        let mut statistics = WedgeStatistics::default();
+        let mut areas = AreaStatistics::default();
+        let mut passes = Vec::new();
+        let mut draws = Vec::new();
+        for side in &self.light.sides {
+            for edge in &silhouettes.edges {
+                let parts = Wedge::of_edge(construction, &side.area, edge.ends, &mut statistics);
+                for part in parts.iter().filter(|_| edge.has_plane()) {
+                    let area =
+                        WedgeArea::new(self.view, construction, &side.area, part.edge, &mut areas);
+                    let shader = |to| {
+                        let plane = HardPlane(edge.normal);
+                        self.covering.shader(side, side.edge(part.edge), plane, to)
+                    };
+                    match self.buffers.aside {
+                        None => draws.extend(self.blended(&area, shader)),
+                        Some(aside) => passes.extend(self.copied(label, &area, aside, shader)),
+                    }
+                }
+            }
+        }
+        warnings.extend(warnings_of(label, &statistics, &areas));
+        if self.buffers.aside.is_none() {
+            passes.push(self.pass(label, self.buffers.targets(), LoadOp::Load, draws));
+        }
+        passes
+    }
+
+    fn pass(
+        &self,
+        label: &str,
+        targets: Vec<TextureId>,
+        load: LoadOp<[f32; 4]>,
+        draws: Vec<Draw>,
+    ) -> RenderPass {
+        RenderPass {
+            label: label.to_owned(),
+            color: targets.into_iter().map(|t| attachment(t, load)).collect(),
+            depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws,
+        }
+    }
+
+    fn skip(&self) -> bool {
+        self.params.get(SKIP.name) != "off"
+    }
+
+    fn blended(&self, area: &WedgeArea, shader: impl Fn(CoverTo) -> FragmentStage) -> Vec<Draw> {
+        let to = if self.buffers.six_bits.is_some() {
+            CoverTo::SixBits
+        } else {
+            CoverTo::Visibility
+        };
+        let pipeline = WedgePipeline {
+            label: COVERAGE_DRAW,
+            fragment: shader(to),
+            targets: vec![ColorTargetState::ADDITIVE; self.buffers.targets().len()],
+            textures: self.bindings(self.positions.texture),
+            skip: self.skip(),
+            note: Note::TakeAndRemove,
+        };
+        area.draws(self.view, pipeline)
+    }
+
+    /// Reads visibility as a texture, writes the sum aside, copies it back.
+    fn copied(
+        &self,
+        label: &str,
+        area: &WedgeArea,
+        aside: TextureId,
+        shader: impl Fn(CoverTo) -> FragmentStage,
+    ) -> [RenderPass; 2] {
+        let visibility = self.buffers.visibility;
+        let add = WedgePipeline {
+            label: "penumbra aside",
+            fragment: shader(CoverTo::Copied),
+            targets: vec![ColorTargetState::OPAQUE],
+            textures: self.bindings(visibility),
+            skip: self.skip(),
+            note: Note::Take,
+        };
+        let copy = WedgePipeline {
+            label: "copy back",
+            fragment: Resolve::Copy.stage(),
+            targets: vec![ColorTargetState::OPAQUE],
+            textures: vec![binding(aside)],
+            skip: self.skip(),
+            note: Note::Remove,
+        };
+        let add = area.draws(self.view, add);
+        let copy = area.draws(self.view, copy);
+        [
+            self.pass(label, vec![aside], LoadOp::Load, add),
+            self.pass(label, vec![visibility], LoadOp::Load, copy),
+        ]
+    }
+
+    /// Positions, `second`, and the coverage table where there is one.
+    fn bindings(&self, second: TextureId) -> Vec<TextureBinding> {
+        let mut slots = vec![binding(self.positions.texture), binding(second)];
+        slots.extend(self.covering.texture().map(binding));
+        slots
+    }
+}

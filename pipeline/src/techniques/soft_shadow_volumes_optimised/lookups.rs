@@ -1,0 +1,39 @@
+//! Look-up textures of a frame.
+
+use gnomon_raster::TextureId;
+use gnomon_shaders::coverage::Image;
+use gnomon_shaders::split_volumes::Tables;
+
+use super::{COVERAGE, SPLIT_BITS};
+use crate::technique::{Params, TechniqueError, TextureSource};
+use crate::techniques::soft::light::SoftLight;
+use crate::techniques::soft::split_tables;
+
+/// Look-up textures of the lights of a frame, one set for each shape.
+#[derive(Default)]
+pub(super) struct Lookups(Vec<(Image, [TextureId; 3])>);
+
+impl Lookups {
+    /// Those of a light, where some are asked for.
+    pub(super) fn of(
+        &mut self,
+        light: &SoftLight,
+        params: &Params,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Option<(Tables, [TextureId; 3])>, TechniqueError> {
+        let tables = Tables {
+            coverage: params.get(COVERAGE.name) == "lut",
+            split: params.get(SPLIT_BITS.name) == "lut",
+        };
+        let Some(side) = light.sides.first().filter(|_| tables != Tables::default()) else {
+            return Ok(None);
+        };
+        let shape = side.projector.image();
+        if let Some((_, made)) = self.0.iter().find(|(of, _)| *of == shape) {
+            return Ok(Some((tables, *made)));
+        }
+        let made = split_tables::create(shape, textures)?;
+        self.0.push((shape, made));
+        Ok(Some((tables, made)))
+    }
+}

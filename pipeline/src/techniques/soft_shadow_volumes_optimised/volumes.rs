@@ -1,0 +1,158 @@
+//! Quads and wedges of one part of a light as passes.
+
+use gnomon_raster::state::ColorTargetState;
+use gnomon_raster::{Draw, LoadOp, RenderPass, TextureId};
+use gnomon_shaders::soft_volumes::{CountTo, HardPlane};
+use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
+
+use super::HALVES;
+use super::buffers::Buffers;
+use crate::technique::Params;
+use crate::techniques::casters::SKIP;
+use crate::techniques::passes::{Targets, View};
+use crate::techniques::soft::count::Counting;
+use crate::techniques::soft::edges::Silhouettes;
+use crate::techniques::soft::halves::Half;
+use crate::techniques::soft::light::{LightSide, SoftLight};
+use crate::techniques::soft::wedges::{
+    AreaStatistics, Note, WedgeArea, WedgePipeline, construction,
+};
+use crate::techniques::visibility::{Positions, attachment, binding};
+use crate::wedge::{Wedge, WedgeStatistics};
+use crate::wedge_work::COVERAGE_DRAW;
+
+/// What wedges of all parts of a light met.
+#[derive(Default)]
+pub(super) struct Met {
+    pub(super) wedges: WedgeStatistics,
+    pub(super) areas: AreaStatistics,
+}
+
+/// Quads and wedges of one part of a light.
+pub(super) struct Volumes<'a> {
+    pub(super) view: &'a View,
+    pub(super) targets: &'a Targets,
+    pub(super) positions: Positions,
+    pub(super) buffers: &'a Buffers,
+    pub(super) tables: Option<(Tables, [TextureId; 3])>,
+    pub(super) light: &'a SoftLight,
+    pub(super) params: &'a Params,
+}
+
+impl Volumes<'_> {
+    pub(super) fn count_pass(&self, label: String, group: &Silhouettes) -> RenderPass {
+        let counting = Counting {
+            view: self.view,
+            positions: self.positions,
+            centre: self.light.centre,
+            to: CountTo::Visibility,
+        };
+        RenderPass {
+            label,
+            color: vec![attachment(self.buffers.hard, LoadOp::Clear([1.0; 4]))],
+            depth_stencil: None,
+            draws: counting.draws(group),
+        }
+    }
+
+    /// Both buffers at once, or one after the other with the half that it takes.
+    pub(super) fn wedge_passes(
+        &self,
+        label: &str,
+        group: &Silhouettes,
+        met: &mut Met,
+    ) -> Vec<RenderPass> {
+        let [added, taken] = self.buffers.split;
+        if self.params.get(HALVES.name) != "on" {
+            let to = WedgeTarget {
+                buffers: vec![added, taken],
+                half: None,
+            };
+            return vec![self.wedge_pass(label, group, &to, met)];
+        }
+        let of = |half, buffer| WedgeTarget {
+            buffers: vec![buffer],
+            half: Some(half),
+        };
+        let inner = self.wedge_pass(label, group, &of(Half::Inner, added), met);
+        // The edges are the same; they are counted once.
+        let mut outer_met = Met {
+            areas: met.areas,
+            ..Met::default()
+        };
+        let outer = self.wedge_pass(label, group, &of(Half::Outer, taken), &mut outer_met);
+        met.areas = outer_met.areas;
+        vec![inner, outer]
+    }
+
+    fn wedge_pass(
+        &self,
+        label: &str,
+        group: &Silhouettes,
+        to: &WedgeTarget,
+        met: &mut Met,
+    ) -> RenderPass {
+        let construction = construction(self.params);
+        let mut draws = Vec::new();
+        for side in &self.light.sides {
+            for edge in group.edges.iter().filter(|e| e.has_plane()) {
+                let parts = Wedge::of_edge(construction, &side.area, edge.ends, &mut met.wedges);
+                for part in parts {
+                    let (view, light, areas) = (self.view, &side.area, &mut met.areas);
+                    let area = match to.half {
+                        None => WedgeArea::new(view, construction, light, part.edge, areas),
+                        Some(h) => WedgeArea::half(view, construction, light, part.edge, h, areas),
+                    };
+                    draws.extend(self.wedge(side, &part, HardPlane(edge.normal), &area, to));
+                }
+            }
+        }
+        let clear = LoadOp::Clear([0.0; 4]);
+        let buffers = to.buffers.iter();
+        RenderPass {
+            label: label.to_owned(),
+            color: buffers.map(|t| attachment(*t, clear)).collect(),
+            depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws,
+        }
+    }
+
+    fn wedge(
+        &self,
+        side: &LightSide,
+        part: &Wedge,
+        plane: HardPlane,
+        area: &WedgeArea,
+        to: &WedgeTarget,
+    ) -> Vec<Draw> {
+        let shader = SplitPenumbra {
+            light: side.projector,
+            edge: side.edge(part.edge),
+            plane,
+            tables: self.tables.map(|(tables, _)| tables).unwrap_or_default(),
+            halves: match to.half {
+                None => Halves::Both,
+                Some(Half::Inner) => Halves::Inner,
+                Some(Half::Outer) => Halves::Outer,
+            },
+        };
+        let lookups = self.tables.iter().flat_map(|(_, textures)| textures);
+        let textures = [self.positions.texture].into_iter().chain(lookups.copied());
+        let pipeline = WedgePipeline {
+            label: COVERAGE_DRAW,
+            fragment: shader.stage(),
+            targets: vec![ColorTargetState::ADDITIVE; to.buffers.len()],
+            textures: textures.map(binding).collect(),
+            skip: self.params.get(SKIP.name) != "off",
+            note: Note::TakeAndRemove,
+        };
+        area.draws(self.view, pipeline)
+    }
+}
+
+/// Where wedges are drawn to, and what of them.
+struct WedgeTarget {
+    buffers: Vec<TextureId>,
+    /// Whole wedges where there is none.
+    half: Option<Half>,
+}

@@ -192,6 +192,10 @@ fn joined(mut frame: Frame, second: Frame) -> Frame {
     frame.list.passes.push(add);
     frame.warnings.extend(second.warnings);
     frame.casters.extend(second.casters);
+    for mut figure in second.figures {
+        figure.name += " (rest)";
+        frame.figures.push(figure);
+    }
     frame
 }
 

@@ -287,7 +287,7 @@ fn shadows_of_fitted_lights_are_right() {
         let convolved = rms("convolution-soft-shadows", &[]);
         println!("light {light}: {sampled:.4} {soft:.4} {convolved:.4} {unshadowed:.4}");
         // Blockers of many depths under a large light: its known error.
-        assert!(unshadowed > 1.25 * convolved, "light {light}: {convolved}");
+        assert!(unshadowed > 1.1 * convolved, "light {light}: {convolved}");
         assert!(sampled < 0.025, "light {light}: {sampled}");
         assert!(soft < 0.09, "light {light}: {soft}");
         assert!(unshadowed > 2.0 * soft, "light {light}: {unshadowed}");

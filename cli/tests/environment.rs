@@ -63,13 +63,91 @@ fn bad_environments_are_refused() {
     assert_eq!(folder.names(), ["text.hdr"]);
 }
 
+/// Saves a latitude-longitude map of `texel`.
+fn map(folder: &Folder, name: &str, [w, h]: [u32; 2], texel: impl Fn(u32, u32) -> [f32; 3]) {
+    let picture = image::ImageBuffer::from_fn(w, h, |x, y| image::Rgb(texel(x, y)));
+    picture.save(folder.path(name)).unwrap();
+}
+
+/// Broken files: a message and exit code 2, whatever they claim to be.
+#[test]
+fn broken_maps_are_refused() {
+    let folder = Folder::new("env-broken");
+    let refused = |name: &str, parts: &[&str]| {
+        folder
+            .gnomon(&format!("render creature --size 16x16 --env {name}"))
+            .refused(parts);
+    };
+    for name in ["whole.hdr", "whole.exr"] {
+        map(&folder, name, [64, 32], |x, y| [(x * y) as f32; 3]);
+        let bytes = std::fs::read(folder.path(name)).unwrap();
+        for (k, share) in [1, 3, 6].into_iter().enumerate() {
+            let cut = format!("cut{k}-{name}");
+            std::fs::write(folder.path(&cut), &bytes[..bytes.len() * share / 8]).unwrap();
+            refused(&cut, &[&cut]);
+        }
+        map(&folder, name, [8, 4], |_, _| [0.0; 3]);
+        refused(name, &[name, "no light"]);
+        map(&folder, name, [7, 4], |_, _| [1.0; 3]);
+        refused(name, &["7x4", "2:1"]);
+    }
+    folder.write("empty.hdr", "");
+    refused("empty.hdr", &["empty.hdr"]);
+    // Far more texels than there are bytes.
+    let header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 200000\n";
+    folder.write("huge.hdr", header);
+    refused("huge.hdr", &["huge.hdr"]);
+    map(&folder, "dark.exr", [8, 4], |_, _| [f32::NAN, -1.0, 0.0]);
+    refused("dark.exr", &["no light"]);
+}
+
+/// Maps with texels that are no radiance, and one of a single texel, give pictures:
+/// finite, lit, and with a warning where something was mended.
+#[test]
+fn odd_maps_give_sensible_pictures() {
+    let folder = Folder::new("env-odd");
+    map(&folder, "odd.exr", [32, 16], |x, y| match (x, y) {
+        (3, 4) => [f32::INFINITY, 1.0, 1.0],
+        (4, 4) => [f32::NAN, 1.0, 1.0],
+        (5, 4) => [-5.0, 1.0, 1.0],
+        (20, 5) => [40.0; 3],
+        _ => [0.5; 3],
+    });
+    map(&folder, "one.hdr", [1, 1], |_, _| [0.5; 3]);
+    map(&folder, "strip.exr", [6, 1], |x, _| [x as f32 * 0.2; 3]);
+    for (name, warnings) in [("odd.exr", 3), ("one.hdr", 0), ("strip.exr", 0)] {
+        for technique in ["convolution-soft-shadows", "soft-shadow-volumes"] {
+            let flags = format!("--env {name} --lights 8 --technique {technique} --size 40x30");
+            let doc = folder
+                .gnomon(&format!("render creature {flags} --out a.png --json"))
+                .json();
+            let of_map = |w: &&Value| {
+                let code = w["code"].as_str().unwrap();
+                assert_ne!(code, "nan", "{name} {technique}");
+                code.starts_with("environment-") && code != "environment-uncovered"
+            };
+            let found = doc["warnings"].as_array().unwrap().iter().filter(of_map);
+            assert_eq!(found.count(), warnings, "{name} {technique}");
+            let picture = image::open(folder.path("a.png")).unwrap().into_rgb8();
+            let mean = picture.pixels().map(|p| u64::from(p[1])).sum::<u64>() / (40 * 30);
+            assert!((20..250).contains(&mean), "{name} {technique}: {mean}");
+        }
+    }
+}
+
 /// Each frame is the single picture of its time, to the bit, with an environment
 /// and without; and frames differ.
 #[test]
 fn frames_are_pictures_of_their_times() {
     let folder = Folder::new("frames");
-    for flags in [String::new(), format!("{SKY} --lights 6")] {
-        let flags = format!("--technique soft-shadow-volumes --size 56x42 {flags} --json");
+    let soft = "--technique soft-shadow-volumes";
+    let sky = format!("{SKY} --lights 6");
+    for flags in [
+        soft.to_owned(),
+        format!("{soft} {sky}"),
+        format!("--technique convolution-soft-shadows --set map-size=64 {sky}"),
+    ] {
+        let flags = format!("--size 56x42 {flags} --json");
         let run = |more: &str| folder.gnomon(&format!("render walk {flags} {more}")).json();
         let all = run("--frames 3 --fps 4 --time 0.5 --out f");
         let frames = all["frames"].as_array().unwrap();

@@ -180,6 +180,7 @@ fn table(bench: &mut Bench, id: TextureId) -> TextureId {
                 textures: 1,
                 axis,
                 step,
+                twice: false,
                 side: SIDE,
                 integer: false,
             };

@@ -75,12 +75,39 @@ impl Bench {
                     textures: 1,
                     axis,
                     step,
+                    twice: false,
                     side,
                     integer,
                 };
                 self.step(shader.stage());
             }
         }
+    }
+
+    /// Two steps at a time, one where one is left.
+    fn sum_twice(&mut self, side: u32, integer: bool) {
+        for axis in 0..2 {
+            let mut step = 1;
+            while step < side {
+                let twice = 2 * step < side;
+                let shader = SumStep {
+                    textures: 1,
+                    axis,
+                    step,
+                    twice,
+                    side,
+                    integer,
+                };
+                self.step(shader.stage());
+                step *= if twice { 4 } else { 2 };
+            }
+        }
+    }
+
+    fn fill(&mut self, values: &[u32]) {
+        let raw: Vec<[u32; 4]> = values.iter().map(|v| [*v; 4]).collect();
+        let texture = self.gpu.texture_mut(self.textures[0]).unwrap();
+        texture.write_raw(Subresource::default(), &raw).unwrap();
     }
 
     fn raw(&self) -> Vec<u32> {
@@ -136,6 +163,33 @@ proptest! {
 fn noise(i: u32) -> f32 {
     let mixed = (i ^ 0x5bd1_e995).wrapping_mul(0x9e37_79b9);
     ((mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 8) as f32 / 16_777_216.0
+}
+
+/// Two steps in one pass are the two passes, to the bit, for half the writes.
+#[test]
+fn steps_at_once_change_no_bit() {
+    for (log, format) in [Format::R32Uint, Format::R32Float]
+        .into_iter()
+        .flat_map(|f| (0..8).map(move |log| (log, f)))
+    {
+        let side = 1u32 << log;
+        let integer = format == Format::R32Uint;
+        let value = |i: u32| match integer {
+            true => (noise(i) * 4e9) as u32,
+            false => (noise(i) * 2.0 - 0.7).to_bits(),
+        };
+        let values: Vec<u32> = (0..side * side).map(value).collect();
+        let [mut one, mut two] = [0, 1].map(|_| Bench::new(format, [side, side]));
+        one.fill(&values);
+        two.fill(&values);
+        one.sum(side, integer);
+        two.sum_twice(side, integer);
+        assert!(one.raw() == two.raw(), "{format:?} {side}");
+        let written = |b: &Bench| b.counted.traffic.color[0].write_accesses;
+        let passes = u64::from(2 * side.ilog2().div_ceil(2)) * u64::from(side * side);
+        assert_eq!(written(&two), passes, "{format:?} {side}");
+        assert!(side < 4 || written(&two) < written(&one));
+    }
 }
 
 /// Largest error of a texel that is taken out of a float table of `side` again.

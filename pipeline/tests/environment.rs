@@ -119,6 +119,11 @@ fn memory_does_not_grow_with_the_number_of_lights() {
         ("soft-shadow-volumes-optimised", &[]),
         ("soft-shadow-volumes-optimised", &["coverage=lut"]),
         ("mixed-lights", &["brightest=2"]),
+        ("shadow-map", &["map-size=64"]),
+        ("pcss", &["map-size=64"]),
+        ("shadow-maps-n", &["maps=4", "map-size=64"]),
+        ("convolution-soft-shadows", &["map-size=64"]),
+        ("convolution-soft-shadows", &["map-size=64", "filter=sat"]),
     ];
     for (name, set) in cases {
         let technique = find(name).unwrap();
@@ -141,6 +146,7 @@ fn bits_do_not_depend_on_execution() {
     for (technique, set) in [
         ("soft-shadow-volumes", &[][..]),
         ("mixed-lights", &["brightest=2"][..]),
+        ("convolution-soft-shadows", &["map-size=64"][..]),
     ] {
         let mut first = None;
         for (k, simd) in SimdLevel::available().into_iter().enumerate() {
@@ -178,6 +184,9 @@ fn fitted_lights_come_near_the_reference() {
     assert!(many.psnr > 30.0 && many.flip < 0.08, "{many:?}");
     let unshadowed = scored(&scene, "unshadowed", &[], &truth);
     assert!(unshadowed.rmse > 1.5 * few.rmse, "{unshadowed:?}");
+    let convolved = scored(&scene, "convolution-soft-shadows", &[], &truth);
+    println!("convolution {convolved:?}\nsoft {few:?}\nnone {unshadowed:?}");
+    assert!(unshadowed.rmse > 1.25 * convolved.rmse, "{convolved:?}");
     let mean = FitSettings {
         residual: ResidualRule::Mean,
         ..lights(30)
@@ -275,7 +284,10 @@ fn shadows_of_fitted_lights_are_right() {
         let sampled = rms("sampled-shadow-volumes", &["samples=64"]);
         let soft = rms("soft-shadow-volumes", &[]);
         let unshadowed = rms("unshadowed", &[]);
-        println!("light {light}: {sampled:.4} {soft:.4} {unshadowed:.4}");
+        let convolved = rms("convolution-soft-shadows", &[]);
+        println!("light {light}: {sampled:.4} {soft:.4} {convolved:.4} {unshadowed:.4}");
+        // Blockers of many depths under a large light: its known error.
+        assert!(unshadowed > 1.1 * convolved, "light {light}: {convolved}");
         assert!(sampled < 0.025, "light {light}: {sampled}");
         assert!(soft < 0.09, "light {light}: {soft}");
         assert!(unshadowed > 2.0 * soft, "light {light}: {unshadowed}");

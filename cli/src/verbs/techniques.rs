@@ -63,7 +63,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
         }
     }
     text += "\nShown are the defaults, in brackets the values that are taken.\n\
-             N is any whole number from 0, X any decimal one, TECHNIQUE a technique:\n\
+             N is any whole number from 0, N+N several, X any decimal one, TECHNIQUE a technique:\n\
              NAME:KEY=VALUE:...";
     output::print(&text)
 }

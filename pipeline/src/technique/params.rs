@@ -10,7 +10,7 @@ pub struct ParamInfo {
     /// Value where none is given.
     pub default: &'static str,
     /// Values it takes, separated by `|`; `N` stands for any whole number from 0,
-    /// `X` for any decimal number from 0, `TECHNIQUE` for a technique's name and
+    /// `N+N` for several, `X` for any decimal number from 0, `TECHNIQUE` for a technique's name and
     /// settings, which it judges itself.
     pub valid: &'static str,
     /// One line for people.
@@ -28,6 +28,7 @@ impl ParamInfo {
         self.valid.split('|').any(|v| match v {
             "N" => is_number(),
             "X" => is_decimal(),
+            "N+N" => value.split('+').all(|n| n.parse::<u32>().is_ok()),
             "TECHNIQUE" => !value.is_empty(),
             word => word == value,
         })

@@ -1,5 +1,5 @@
-//! Two techniques for the lights of one scene: the brightest by one, the others
-//! by the other.
+//! Two techniques for the lights of one scene: the brightest, or those chosen by
+//! number, by one, the others by the other.
 //!
 //! A scene under an environment has tens of lights, few of which make shadows
 //! that are seen as such. Each technique draws its own lights, ambient light with
@@ -29,6 +29,13 @@ const BRIGHTEST: ParamInfo = ParamInfo {
     default: "8",
     valid: "N",
     summary: "how many lights the first technique draws; visibility is that of the brightest",
+};
+
+const CHOOSE: ParamInfo = ParamInfo {
+    name: "choose",
+    default: "brightest",
+    valid: "brightest|N+N",
+    summary: "lights of the first technique: the brightest, or those of these numbers; visibility is that of the first of them",
 };
 
 const FIRST: ParamInfo = ParamInfo {
@@ -63,6 +70,7 @@ impl Technique for MixedLights {
     fn params(&self) -> &'static [ParamInfo] {
         const PARAMS: &[ParamInfo] = &[
             BRIGHTEST,
+            CHOOSE,
             FIRST,
             REST,
             passes::LIGHT,
@@ -85,14 +93,13 @@ impl Technique for MixedLights {
         let [first, rest] = inner;
         let (first, rest) = (first?, rest?);
         let lights = by_brightness(scene, passes::lights(scene, params)?);
-        let brightest = params.get(BRIGHTEST.name).parse().unwrap_or(usize::MAX);
-        let (bright, others) = lights.split_at(brightest.min(lights.len()));
+        let (bright, others) = self.shared_out(scene, lights, params)?;
         let dark = Scene {
             ambient: [0.0; 3],
             background: [0.0; 3],
             ..scene.clone()
         };
-        match (bright, others) {
+        match (&bright[..], &others[..]) {
             (bright, []) => first.frame(scene, bright, size, textures),
             ([], others) => rest.frame(scene, others, size, textures),
             (bright, others) => {
@@ -101,6 +108,45 @@ impl Technique for MixedLights {
                 Ok(joined(frame, second))
             }
         }
+    }
+}
+
+impl MixedLights {
+    /// The first technique's lights, and the others.
+    fn shared_out(
+        &self,
+        scene: &Scene,
+        lights: Vec<usize>,
+        params: &Params,
+    ) -> Result<(Vec<usize>, Vec<usize>), TechniqueError> {
+        let given = params.get(CHOOSE.name);
+        if given == CHOOSE.default {
+            let brightest = params.get(BRIGHTEST.name).parse().unwrap_or(usize::MAX);
+            let (bright, others) = lights.split_at(brightest.min(lights.len()));
+            return Ok((bright.to_vec(), others.to_vec()));
+        }
+        let mut chosen = Vec::new();
+        for number in given.split('+') {
+            let number = number.parse().map_err(|_| TechniqueError::BadValue {
+                technique: self.name(),
+                key: CHOOSE.name,
+                value: given.to_owned(),
+                valid: "brightest, or numbers of lights with + between them, such as 0+3",
+            })?;
+            if number >= scene.lights.len() {
+                let count = scene.lights.len();
+                return Err(TechniqueError::NoSuchLight {
+                    given: number,
+                    count,
+                });
+            }
+            if lights.contains(&number) && !chosen.contains(&number) {
+                chosen.push(number);
+            }
+        }
+        let mut others = lights;
+        others.retain(|l| !chosen.contains(l));
+        Ok((chosen, others))
     }
 }
 
@@ -192,6 +238,10 @@ fn joined(mut frame: Frame, second: Frame) -> Frame {
     frame.list.passes.push(add);
     frame.warnings.extend(second.warnings);
     frame.casters.extend(second.casters);
+    for mut figure in second.figures {
+        figure.name += " (rest)";
+        frame.figures.push(figure);
+    }
     frame
 }
 
@@ -301,6 +351,19 @@ mod tests {
         assert!(seen > 1000);
     }
 
+    /// Chosen by number, in the order given: as if these were the brightest.
+    #[test]
+    fn lights_are_chosen_by_number() {
+        let scene = scene();
+        let brightest = drawn(&scene, MIXED, &["brightest=2"]);
+        let chosen = drawn(&scene, MIXED, &["choose=1+2"]);
+        assert!(chosen.srgb == brightest.srgb);
+        let other = drawn(&scene, MIXED, &["choose=0", "brightest=2"]);
+        assert!(other.srgb != brightest.srgb);
+        let twice = drawn(&scene, MIXED, &["choose=0+0"]);
+        assert!(twice.srgb == other.srgb);
+    }
+
     #[test]
     fn techniques_are_checked() {
         let technique = find(MIXED).unwrap();
@@ -314,5 +377,8 @@ mod tests {
         assert!(refused("rest=mixed-lights").contains("any technique but"));
         assert!(refused("rest=shadow-volumes:method=zz").contains("auto|zpass|zfail"));
         assert!(refused("light=7").contains("light 7"));
+        assert!(refused("choose=0+7").contains("light 7"));
+        let word = Params::parse(technique, ["choose=0+a"]).unwrap_err();
+        assert!(word.to_string().contains("brightest|N+N"), "{word}");
     }
 }

@@ -156,8 +156,10 @@ impl Prefiltered for Mipmaps {
         squares: &Squares<L>,
     ) -> [F32<L>; 4] {
         let zero = F32::splat(l, 0.0);
-        let cell = images.atlas.cell(tile).map(|c| c as f32);
-        let scale = [images.atlas.columns, images.atlas.rows].map(|n| 1.0 / n as f32);
+        let [column, row] = images.atlas.cell(tile);
+        let cell = [column as f32, row as f32];
+        let Atlas { columns, rows, .. } = images.atlas;
+        let scale = [1.0 / columns as f32, 1.0 / rows as f32];
         let mut sum = [zero; 4];
         for i in 0..self.probes {
             let [u, v] = self.probe(squares, i);
@@ -258,9 +260,9 @@ impl FloatTables {
         tile: usize,
     ) -> [F32<L>; 4] {
         let factor = super::prefilter::mean_factor(self.side);
-        let [column, row] = images.atlas.cell(tile).map(|c| I32::splat(l, c as i32));
+        let [column, row] = images.atlas.cell(tile);
         let level = self.side.trailing_zeros();
-        let at = [column, row];
+        let at = [I32::splat(l, column as i32), I32::splat(l, row as i32)];
         let mean = super::prefilter::texel_at(l, f, images.slot, at, level);
         each4(
             #[inline(always)]
@@ -277,13 +279,14 @@ impl FloatTables {
         tile: usize,
         at: [F32<L>; 2],
     ) -> [F32<L>; 4] {
-        let origin = images.atlas.origin(tile).map(|o| o as f32);
-        let [x, y] = [at[0] + origin[0], at[1] + origin[1]];
+        let [column, row] = images.atlas.origin(tile);
+        let [x, y] = [at[0] + column as f32, at[1] + row as f32];
         if self.edges == BoxEdges::Texel {
             let at = [x.to_i32(), y.to_i32(), I32::splat(l, 0)];
             return crate::soft_volumes::texel_of(l, f, images.slot, at);
         }
-        let [w, h] = images.atlas.size().map(|s| 1.0 / s as f32);
+        let [width, height] = images.atlas.size();
+        let [w, h] = [1.0 / width as f32, 1.0 / height as f32];
         let zero = F32::splat(l, 0.0);
         f.sample_level(images.slot, [(x + 0.5) * w, (y + 0.5) * h, zero], zero)
     }

@@ -101,12 +101,15 @@ pub struct Atlas {
 impl Atlas {
     /// Column and row of texels at which `tile` begins.
     #[must_use]
+    #[inline(always)]
     pub fn origin(&self, tile: usize) -> [u32; 2] {
-        self.cell(tile).map(|c| c * self.side)
+        let [column, row] = self.cell(tile);
+        [column * self.side, row * self.side]
     }
 
     /// Column and row of a tile among tiles.
     #[must_use]
+    #[inline(always)]
     pub fn cell(&self, tile: usize) -> [u32; 2] {
         let tile = tile as u32;
         [tile % self.columns, tile / self.columns]
@@ -114,6 +117,7 @@ impl Atlas {
 
     /// Width and height in texels.
     #[must_use]
+    #[inline(always)]
     pub fn size(&self) -> [u32; 2] {
         [self.columns * self.side, self.rows * self.side]
     }

@@ -136,9 +136,12 @@ impl FragmentShader for LessMean {
     }
 }
 
-/// One step of recursive doubling (Hensley et al. 2005): to each entry of a tile the
-/// one `step` before it is added. After steps 1, 2, 4 … an entry is the sum of all up
-/// to it.
+/// One step of recursive doubling (Hensley et al. 2005), or two at once: to each entry
+/// of a tile the one `step` before it is added. After steps 1, 2, 4 … an entry is the
+/// sum of all up to it.
+///
+/// Two steps at once read the entries that the second would find and write none of
+/// them: the same sums of the same pairs, to the bit, with half the writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SumStep {
     /// Textures in slots from 0, attachments likewise.
@@ -147,6 +150,8 @@ pub struct SumStep {
     pub axis: usize,
     /// Texels back.
     pub step: u32,
+    /// The next step, of twice as many, too.
+    pub twice: bool,
     /// Texels along a side of a tile, a power of two.
     pub side: u32,
     /// Sums of unsigned integers, modulo 2³².
@@ -154,17 +159,62 @@ pub struct SumStep {
 }
 
 impl SumStep {
-    /// Where the other entry is, and where there is one; outside the texture where
-    /// there is none, so that nothing is read.
+    /// Where the entry `steps` back is, and where there is one; outside the texture
+    /// where there is none, so that nothing is read.
     #[inline(always)]
-    fn before<L: Lanes>(&self, l: L, at: [I32<L>; 2]) -> ([I32<L>; 2], Mask<L>) {
-        let step = I32::splat(l, self.step as i32);
+    fn before<L: Lanes>(&self, l: L, at: [I32<L>; 2], steps: u32) -> ([I32<L>; 2], Mask<L>) {
+        let back = I32::splat(l, (self.step * steps) as i32);
         let within = at[self.axis] & I32::splat(l, self.side as i32 - 1);
-        let some = within.ge(step);
+        let some = within.ge(back);
         let mut other = at;
-        other[self.axis] = some.select_i32(at[self.axis] - step, I32::splat(l, -1));
+        other[self.axis] = some.select_i32(at[self.axis] - back, I32::splat(l, -1));
         (other, some)
     }
+
+    /// An entry and those before it that are added, of integers.
+    #[inline(always)]
+    fn integers<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>, slot: usize) -> U32<L> {
+        let at = [f.column(), f.row()];
+        let zero = U32::splat(l, 0);
+        let mut sum = bits_of(l, f, slot, at);
+        for steps in 1..=self.entries() {
+            let (other, some) = self.before(l, at, steps);
+            sum = sum + some.select_u32(bits_of(l, f, slot, other), zero);
+        }
+        sum
+    }
+
+    /// The same of floats, in the order of one step after the other.
+    #[inline(always)]
+    fn floats<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>, slot: usize) -> [F32<L>; 4] {
+        let at = [f.column(), f.row()];
+        let own = texel_at(l, f, slot, at, 0);
+        let (other, some) = self.before(l, at, 1);
+        let first = added(own, texel_at(l, f, slot, other, 0), some);
+        if !self.twice {
+            return first;
+        }
+        let (other, second) = self.before(l, at, 2);
+        let (farthest, third) = self.before(l, at, 3);
+        let far = texel_at(l, f, slot, other, 0);
+        let far = added(far, texel_at(l, f, slot, farthest, 0), third);
+        added(first, far, second)
+    }
+
+    /// Entries that are added.
+    #[inline(always)]
+    fn entries(&self) -> u32 {
+        if self.twice { 3 } else { 1 }
+    }
+}
+
+/// The sum where there is something to add.
+#[inline(always)]
+fn added<L: Lanes>(a: [F32<L>; 4], b: [F32<L>; 4], some: Mask<L>) -> [F32<L>; 4] {
+    each4(
+        #[inline(always)]
+        |i| some.select_f32(a[i] + b[i], a[i]),
+    )
 }
 
 impl FragmentShader for SumStep {
@@ -174,19 +224,12 @@ impl FragmentShader for SumStep {
 
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
-        let at = [f.column(), f.row()];
-        let (other, some) = self.before(l, at);
         for slot in 0..self.textures {
             if self.integer {
-                let (a, b) = (bits_of(l, f, slot, at), bits_of(l, f, slot, other));
-                let sum = a + some.select_u32(b, U32::splat(l, 0));
+                let sum = self.integers(l, f, slot);
                 f.set_color_uint(slot, sum);
             } else {
-                let (a, b) = (texel_at(l, f, slot, at, 0), texel_at(l, f, slot, other, 0));
-                let sum = each4(
-                    #[inline(always)]
-                    |i| some.select_f32(a[i] + b[i], a[i]),
-                );
+                let sum = self.floats(l, f, slot);
                 f.set_color(slot, sum);
             }
         }

@@ -24,8 +24,8 @@ pub struct Sharpening {
 ///
 /// Texture 0 holds positions (w is 0 where no shadow falls); slots of the images are
 /// theirs. A fragment is discarded before any other look-up where nothing can be in
-/// the light's way: no shadow falls there, or it is not beyond the view's near
-/// distance. It is discarded before the last look-ups where 1 − s is below the
+/// the light's way: no shadow falls there, it is not beyond the view's near distance,
+/// or all of its first kernel is outside the view. It is discarded before the last look-ups where 1 − s is below the
 /// threshold. The attachment must hold 1 before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvolutionShadow<P> {
@@ -178,6 +178,11 @@ impl<P: Prefiltered> FragmentShader for ConvolutionShadow<P> {
         let mut lit = !reached;
         for _ in 0..=self.iterations {
             let window = self.window(l, at.uv, distance, at.distance);
+            lit = lit | !P::share(&window).gt(zero);
+            f.discard(lit);
+            if !(!lit & f.live()).any() {
+                return;
+            }
             let weighted = self.blocked_depth(l, f, &terms, &window);
             let blocked = self.blocked(l, f, &terms, &window);
             lit = lit | !(blocked * P::share(&window)).ge(F32::splat(l, self.threshold));

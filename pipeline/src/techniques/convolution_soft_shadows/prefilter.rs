@@ -149,7 +149,8 @@ impl Prefilter<'_> {
         (passes, mains(group, 0).textures)
     }
 
-    /// Rows, then columns, by recursive doubling; to and fro between two textures.
+    /// Rows, then columns, by recursive doubling, two steps a pass; to and fro between
+    /// two textures.
     fn table_passes(&self, group: &Group, label: &str) -> (Vec<RenderPass>, Vec<TextureId>) {
         let texels = self.needed.level(0);
         let mut passes = Vec::new();
@@ -166,17 +167,20 @@ impl Prefilter<'_> {
         for axis in 0..2 {
             // Entries beyond the last that is read need no sums.
             let end = texels.end[axis];
-            let steps = (0..).map(|k| 1u32 << k).take_while(|step| *step < end);
-            for step in steps {
+            let mut step = 1;
+            while step < end {
+                let twice = 2 * step < end;
                 let shader = SumStep {
                     textures: group.textures.len(),
                     axis,
                     step,
+                    twice,
                     side: group.atlas.side,
                     integer: self.integer(),
                 };
                 passes.push(pass(label, group, &from, &to, texels, |_| shader.stage()));
                 std::mem::swap(&mut from, &mut to);
+                step *= if twice { 4 } else { 2 };
             }
         }
         (passes, from.textures)

@@ -245,7 +245,7 @@ fn the_shaders_find_what_the_twin_finds() {
             let twin = Twin::new(&scene, &ran, Test::Series(series));
             let (positions, visible) = (ran.read("positions"), ran.read("visibility"));
             let (mut worst, mut judged) = (0.0f64, 0);
-            for (i, [x, y, z, w]) in positions.into_iter().enumerate().step_by(23) {
+            for (i, [x, y, z, w]) in positions.into_iter().enumerate().step_by(31) {
                 let found = twin.visibility(DVec3::from([x, y, z].map(f64::from)));
                 if w == 0.0 || (found.blocked - twin.threshold).abs() < 0.05 * twin.threshold {
                     continue;

@@ -15,6 +15,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod annen;
+mod annen_shadows;
+mod annen_sky;
+mod annen_table;
 mod equal_error;
 mod finding;
 mod judge;
@@ -23,6 +27,7 @@ mod overlaps;
 mod paper1;
 mod paper2;
 mod paper2_tiles;
+mod paper2_time;
 mod paper3;
 mod paper3_scaling;
 mod paper4;
@@ -30,6 +35,7 @@ mod paper4_quality;
 mod paper5;
 mod scenes;
 mod shader_work;
+mod tally;
 mod thesis;
 
 use thiserror::Error;
@@ -118,13 +124,14 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 6] = [
+    let papers: [&'static [Claim]; 7] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
         paper3::CLAIMS,
         paper4::CLAIMS,
         paper5::CLAIMS,
+        annen::CLAIMS,
     ];
     papers.into_iter().flatten()
 }

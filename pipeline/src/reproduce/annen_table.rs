@@ -131,7 +131,8 @@ pub(super) fn table(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     })
 }
 
-/// Times and bytes over the number of lights, a chart for each filter.
+/// Times over the number of lights, a chart for each filter: ours, and theirs for the
+/// least and the largest views.
 fn charts(all: &[Entry], base: &Entry, base_fps: f64) -> Vec<Chart> {
     let of = |f: usize, s: usize, figure: &dyn Fn(&Entry) -> Option<f64>| {
         let of = all.iter().filter(|e| e.at[..2] == [f, s]);
@@ -142,22 +143,19 @@ fn charts(all: &[Entry], base: &Entry, base_fps: f64) -> Vec<Chart> {
         let mut series = Vec::new();
         for (s, side) in SIDES.into_iter().enumerate() {
             let ours = of(f, s, &|e| Some(e.ms / base.ms));
-            let theirs = of(f, s, &|e| Some(base_fps / theirs(e.at)?));
-            let bytes = of(f, s, &|e| Some(e.bytes / base.bytes));
-            if !ours.is_empty() {
-                series.push(Series::line(&format!("{side}: time, ours"), ours));
-                series.push(Series::marked(
-                    &format!("{side}: theirs"),
-                    theirs,
-                    Mark::Dashed,
-                ));
-                series.push(Series::marked(&format!("{side}: bytes"), bytes, Mark::Dots));
-            }
+            series.push(Series::line(&format!("{side}: ours"), ours));
         }
+        for s in [0, SIDES.len() - 1] {
+            let points = (0..LIGHTS.len())
+                .filter_map(|l| Some([LIGHTS[l] as f64, base_fps / theirs([f, s, l])?]));
+            let label = format!("{}: theirs", SIDES[s]);
+            series.push(Series::marked(&label, points.collect(), Mark::Dashed));
+        }
+        series.retain(|s| !s.points.is_empty());
         let name = FILTERS[f].1;
         Chart {
             name: format!("annen-table1-{}", name.to_lowercase()),
-            title: format!("Table 1, {name}: over mip 256 with one light"),
+            title: format!("Table 1, {name}: times over mip 256 with one light"),
             x: Axis::log10("lights"),
             y: Axis::log10("times mip 256 with one light"),
             series,
@@ -243,10 +241,8 @@ mod tests {
         assert_eq!(all[1].name(), "SAT 128, 1 light");
         let drawn = charts(&all, find(&all, BASE), 228.0);
         assert_eq!(drawn.len(), 2);
-        let base = &drawn[0].series[3];
-        assert_eq!(
-            (&*base.label, &*base.points),
-            ("256: time, ours", &[[1.0, 1.0]][..])
-        );
+        let base = &drawn[0].series[1];
+        assert_eq!(base.label, "256: ours");
+        assert_eq!(base.points, [[1.0, 1.0]]);
     }
 }

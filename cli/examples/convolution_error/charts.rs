@@ -83,7 +83,7 @@ fn against(rows: &[Row], scene: &str, short: &str, what: &str, cost: fn(&Row) ->
         let label = format!("{name}: {SIDE}, M = {}-{}", ORDERS[0], ORDERS[4]);
         series.push(curve(&label, &chosen));
     }
-    let label = format!("PCSS, all texels, {}-{}", SIDES[0], SIDES[3]);
+    let label = format!("PCSS, all texels, {}-{}", SIDES[0], SIDES[2]);
     series.push(curve(&label, &|r: &Row| r.setup.technique == PCSS));
     Chart {
         name: format!("convolution-{scene}-{short}"),

@@ -17,7 +17,7 @@ use gnomon_raster::GpuConfig;
 const SIZE: [u32; 2] = [320, 240];
 /// Threads, so that times are of as many on every machine.
 const THREADS: usize = 2;
-/// Frames shorter than this are timed three times, milliseconds.
+/// Milliseconds below which frames are timed more often.
 const SHORT: f64 = 100.0;
 
 pub(crate) const TECHNIQUE: &str = "convolution-soft-shadows";
@@ -120,7 +120,7 @@ pub(crate) struct Row {
     max: f64,
     /// Step height in penumbrae that 99% do not exceed.
     steps: f64,
-    /// Of the passes that make the shadow.
+    /// Of the passes that make the shadow: the least.
     pub(crate) ms: f64,
     pub(crate) bytes: f64,
 }
@@ -216,12 +216,20 @@ fn drawn(scene: &Scene, setup: &Setup) -> Result<Drawn, Box<dyn Error>> {
         };
         render(scene, technique, &params, &settings)
     };
-    let mut done = frame(1)?;
-    if done.frame_ms < SHORT {
-        done = frame(3)?;
+    let shadow = |done: &Rendered| -> f64 {
+        let passes = done.pass_ms.iter().filter(|(l, _)| !is_shading(l));
+        passes.map(|(_, ms)| ms).sum()
+    };
+    let done = frame(1)?;
+    let mut ms = shadow(&done);
+    // What else the machine does only makes times longer.
+    if ms < SHORT {
+        for _ in 0..3 {
+            ms = ms.min(shadow(&frame(3)?));
+        }
+    } else {
+        ms = ms.min(shadow(&frame(1)?));
     }
-    let passes = done.pass_ms.iter().filter(|(l, _)| !is_shading(l));
-    let ms = passes.map(|(_, ms)| ms).sum();
     let passes = done.report.passes.iter().filter(|p| !is_shading(&p.label));
     let bytes: u64 = passes.map(|p| p.totals().traffic.total_bytes()).sum();
     Ok(Drawn(done, ms, bytes as f64))

@@ -50,7 +50,9 @@ impl Entry {
     fn new(lab: &Lab, at: [usize; 3]) -> Result<Self, ReproduceError> {
         let scene = statue_lights(lab, LIGHTS[at[2]])?;
         let side = format!("map-size={}", SIDES[at[1]]);
-        let done = lab.steady(&scene, TECHNIQUE, &[FILTERS[at[0]].0, &side])?;
+        // Long frames make up for what else the machine does.
+        let frames = if scene.lights.len() > 10 { 1 } else { 3 };
+        let done = lab.steady(&scene, TECHNIQUE, &[FILTERS[at[0]].0, &side], frames)?;
         Ok(Self {
             at,
             ms: done.frame_ms,
@@ -116,7 +118,7 @@ pub(super) fn table(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     }
     Ok(Finding {
         scene: lab.describe("statue of 70,000 triangles, square lights all round"),
-        counted: "frame time, emulated, the first frame left out. The whole table with --full, \
+        counted: "frame time, emulated: of 20 and 40 lights one frame, else the median of three. The whole table with --full, \
             minutes; else a part of it"
             .to_owned(),
         measures,

@@ -197,19 +197,20 @@ impl Lab {
         self.rendered(scene, technique, set, size)
     }
 
-    /// Frames on one GPU, of which the first is not timed, so that textures are there:
-    /// for long frames. The median of at most three.
+    /// Frames on one GPU, the median of at most `frames`; of several the first is not
+    /// timed, so that textures are there.
     pub(super) fn steady(
         &self,
         scene: &Scene,
         technique: &str,
         set: &[&str],
+        frames: u32,
     ) -> Result<Rendered, ReproduceError> {
         let (technique, params) = parsed(technique, set)?;
         let settings = RenderSettings {
             size: self.size(),
             gpu: self.settings.gpu,
-            repeat: self.settings.repeat.min(3),
+            repeat: self.settings.repeat.min(frames),
         };
         Ok(render(scene, technique, &params, &settings)?)
     }

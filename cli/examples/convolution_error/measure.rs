@@ -3,12 +3,10 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
-use gnomon_pipeline::comparison::{BANDING_EDGE, Reference, ReferenceKind};
-use gnomon_pipeline::light::HardLight;
+use gnomon_pipeline::comparison::{BANDING_EDGE, Reference, ReferenceKind, facing};
 use gnomon_pipeline::metrics::banding::Banding;
 use gnomon_pipeline::metrics::visibility::VisibilityError;
 use gnomon_pipeline::oracle::area::LightRegion;
-use gnomon_pipeline::oracle::surfaces::Surfaces;
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::Scene;
 use gnomon_pipeline::technique::{Params, find};
@@ -166,24 +164,6 @@ impl Row {
     }
 }
 
-/// Whether the surface of each pixel faces the centre of light 0.
-fn facing(scene: &Scene) -> Vec<bool> {
-    let [width, height] = SIZE;
-    let (surfaces, rays) = (Surfaces::new(scene), scene.camera.eye_rays(width, height));
-    let HardLight::Point(light) = scene.lights[0].hard() else {
-        return vec![true; (width * height) as usize];
-    };
-    let faces = |i: u32| {
-        let [x, y] = [i % width, i / width].map(|c| f64::from(c) + 0.5);
-        surfaces.hit(&rays, x, y).is_some_and(|hit| {
-            let mesh = &scene.objects[hit.object as usize].mesh;
-            let [a, b, c] = mesh.corners(hit.triangle as usize);
-            (b - a).cross(c - a).dot(light - a) > 0.0
-        })
-    };
-    (0..width * height).map(faces).collect()
-}
-
 /// Passes that are not of the shadow.
 fn is_shading(label: &str) -> bool {
     label.starts_with("ambient") || label.starts_with("lit")
@@ -238,7 +218,7 @@ fn drawn(scene: &Scene, setup: &Setup) -> Result<Drawn, Box<dyn Error>> {
 /// All rows of a scene.
 pub(crate) fn measure(scene: &Scene) -> Result<Vec<Row>, Box<dyn Error>> {
     let truth = Reference::new(scene, 0, SIZE, ReferenceKind::Exact, None, &|| ())?;
-    let faces = facing(scene);
+    let faces = facing(scene, 0, SIZE);
     let mut rows = Vec::new();
     for setup in Setup::all() {
         let row = Row::new(scene, &truth, &faces, setup)?;

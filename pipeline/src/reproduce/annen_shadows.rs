@@ -6,6 +6,7 @@ use super::annen::TECHNIQUE;
 use super::lab::Scored;
 use super::scenes::{WALL_BACK, wall, with_lights_scaled};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
+use crate::comparison::facing;
 use crate::render::Rendered;
 use crate::scene::Scene;
 
@@ -21,7 +22,13 @@ fn scored(
     technique: &str,
     set: &[&str],
 ) -> Result<Scored, ReproduceError> {
-    let done = lab.render(scene, technique, set)?;
+    let mut done = lab.render(scene, technique, set)?;
+    // Others are dark whatever is visible from them.
+    let faces = facing(scene, 0, done.size);
+    let turned = done.visibility.iter_mut().zip(&faces);
+    turned
+        .filter(|(_, faces)| !**faces)
+        .for_each(|(v, _)| *v = f32::NAN);
     lab.score(scene, &done)
 }
 
@@ -50,7 +57,7 @@ pub(super) fn mip_quality(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     Ok(Finding {
         scene: lab.describe("parallel-plates, spheres, creature, and that under a light of side 3"),
         counted: format!(
-            "RMSE of float visibility against the exact oracle; {STEPS}; views of 512x512, M = 4, \
+            "RMSE of float visibility against the exact oracle where surfaces face the light; {STEPS}; views of 512x512, M = 4, \
              tables in exact integers"
         ),
         measures,

@@ -192,6 +192,10 @@ pub(crate) struct ReproduceArgs {
     /// Frames to time where times are compared; the least time counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub(crate) repeat: u32,
+    /// Measure whole tables, and pictures of the whole size, where a claim else takes a
+    /// part: minutes
+    #[arg(long)]
+    pub(crate) full: bool,
     /// How to execute.
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,

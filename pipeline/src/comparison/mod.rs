@@ -30,6 +30,7 @@
 
 mod aligned;
 mod environment;
+mod facing;
 mod reference;
 mod score;
 mod shaded;
@@ -39,6 +40,7 @@ use thiserror::Error;
 
 pub use aligned::Aligned;
 pub use environment::{Directions, EnvironmentReference, RadianceScore};
+pub use facing::facing;
 pub use reference::{Origin, RAYS_SEED, RAYS_SIDE, Reference, ReferenceKind, UnknownReference};
 pub use score::{BANDING_EDGE, Score};
 pub use shaded::{ShadingKey, shaded};

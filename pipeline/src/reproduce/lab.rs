@@ -1,11 +1,12 @@
-//! What claims are measured with: renders, counters by pass, times, errors.
+//! What claims are measured with: renders, times, errors.
 
 use std::collections::BTreeMap;
 
-use gnomon_raster::{Counters, Gpu, GpuConfig, TextureDescriptor, TextureDimension, TextureId};
+use gnomon_raster::{Gpu, GpuConfig, TextureDescriptor, TextureId};
 use thiserror::Error;
 
-use crate::comparison::{CompareError, Reference, ReferenceKind};
+use crate::comparison::{CompareError, Directions, EnvironmentReference, Reference, ReferenceKind};
+use crate::environment::{Environment, EnvironmentError};
 use crate::error::{MeshError, UnknownScene};
 use crate::metrics::MetricError;
 use crate::metrics::banding::Banding;
@@ -25,6 +26,8 @@ pub struct LabSettings {
     pub gpu: GpuConfig,
     /// Frames timed where times are compared; the least time counts.
     pub repeat: u32,
+    /// Whole tables, and pictures of the whole size, where a claim else takes a part.
+    pub full: bool,
 }
 
 impl Default for LabSettings {
@@ -33,6 +36,7 @@ impl Default for LabSettings {
             size: [512, 384],
             gpu: GpuConfig::default(),
             repeat: 5,
+            full: false,
         }
     }
 }
@@ -59,6 +63,9 @@ pub enum ReproduceError {
     /// Pictures cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
+    /// A map cannot light a scene.
+    #[error(transparent)]
+    Environment(#[from] EnvironmentError),
     /// The GPU refuses its settings or a frame.
     #[error(transparent)]
     Gpu(#[from] gnomon_raster::Error),
@@ -70,6 +77,8 @@ pub struct Lab {
     cache: Option<OracleCache>,
     /// By the scene's name and the size.
     references: BTreeMap<(String, [u32; 2]), Reference>,
+    /// By the scene's and the map's name, the size and the number of directions.
+    skies: BTreeMap<(String, String, [u32; 2], usize), EnvironmentReference>,
 }
 
 /// A picture against the truth.
@@ -87,6 +96,7 @@ impl Lab {
             settings,
             cache,
             references: BTreeMap::new(),
+            skies: BTreeMap::new(),
         }
     }
 
@@ -176,6 +186,35 @@ impl Lab {
         Ok(least)
     }
 
+    /// One frame of any size.
+    pub(super) fn plain(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+        size: [u32; 2],
+    ) -> Result<Rendered, ReproduceError> {
+        self.rendered(scene, technique, set, size)
+    }
+
+    /// Frames on one GPU, the median of at most `frames`; of several the first is not
+    /// timed, so that textures are there.
+    pub(super) fn steady(
+        &self,
+        scene: &Scene,
+        technique: &str,
+        set: &[&str],
+        frames: u32,
+    ) -> Result<Rendered, ReproduceError> {
+        let (technique, params) = parsed(technique, set)?;
+        let settings = RenderSettings {
+            size: self.size(),
+            gpu: self.settings.gpu,
+            repeat: self.settings.repeat.min(frames),
+        };
+        Ok(render(scene, technique, &params, &settings)?)
+    }
+
     fn rendered(
         &self,
         scene: &Scene,
@@ -225,6 +264,21 @@ impl Lab {
             self.references.insert(key.clone(), found);
         }
         Ok(self.references[&key].under(&done.depth)?.truth)
+    }
+
+    /// Light of every pixel under a map, by sampled directions, with highlights.
+    pub(super) fn sky(
+        &mut self,
+        scene: &Scene,
+        map: &Environment,
+        size: [u32; 2],
+        count: usize,
+    ) -> &EnvironmentReference {
+        let key = (scene.name.clone(), map.name.clone(), size, count);
+        let directions = Directions { count, seed: 1 };
+        self.skies.entry(key).or_insert_with(|| {
+            EnvironmentReference::new(scene, &map.cube, size, directions, true, &|| ())
+        })
     }
 
     /// A frame that is built and not run, with all textures that it makes.
@@ -302,74 +356,4 @@ impl TextureSource for Noted<'_> {
     ) -> Result<(), gnomon_raster::Error> {
         self.gpu.write(texture, image, texels)
     }
-}
-
-/// Bytes of a texture without mip levels.
-pub(super) fn bytes_of(texture: &TextureDescriptor) -> u64 {
-    let layers = match texture.dimension {
-        TextureDimension::Cube => 6,
-        _ => 1,
-    };
-    let texels: u64 = texture.size.iter().map(|s| u64::from(*s)).product();
-    layers * texels * texture.format.bytes()
-}
-
-/// Sum of the counters of all passes that are called one of `labels`; with several
-/// lights labels carry the light's number behind.
-pub(super) fn counters(done: &Rendered, labels: &[&str]) -> Counters {
-    let mut sum = Counters::default();
-    let passes = done.report.passes.iter();
-    for pass in passes.filter(|p| is_one_of(&p.label, labels)) {
-        sum.add(&pass.totals());
-    }
-    sum
-}
-
-/// Milliseconds of the same passes.
-pub(super) fn pass_time(done: &Rendered, labels: &[&str]) -> f64 {
-    let passes = done.pass_ms.iter();
-    passes
-        .filter(|(label, _)| is_one_of(label, labels))
-        .map(|(_, ms)| ms)
-        .sum()
-}
-
-fn is_one_of(label: &str, labels: &[&str]) -> bool {
-    let is_number = |rest: &str| {
-        rest.strip_prefix(' ')
-            .is_some_and(|n| n.parse::<u32>().is_ok())
-    };
-    let rests = labels.iter().filter_map(|l| label.strip_prefix(l));
-    rests
-        .into_iter()
-        .any(|rest| rest.is_empty() || is_number(rest))
-}
-
-/// Invocations of the draws that are called `draw`, in all passes.
-pub(super) fn invocations(done: &Rendered, draw: &str) -> u64 {
-    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
-    draws
-        .filter(|d| d.label == draw)
-        .map(|d| d.counters.fragment_shader_invocations)
-        .sum()
-}
-
-/// Fragments that draws called `draw` wrote, in all passes.
-pub(super) fn written(done: &Rendered, draw: &str) -> u64 {
-    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
-    draws
-        .filter(|d| d.label == draw)
-        .map(|d| d.counters.fragments.written)
-        .sum()
-}
-
-/// Draws that are called `draw`, in all passes.
-pub(super) fn draws(done: &Rendered, draw: &str) -> usize {
-    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
-    draws.filter(|d| d.label == draw).count()
-}
-
-/// A ratio of counts; not finite for nothing.
-pub(super) fn ratio(of: u64, to: u64) -> f64 {
-    of as f64 / to as f64
 }

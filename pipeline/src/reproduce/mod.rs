@@ -15,6 +15,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod annen;
+mod annen_shadows;
+mod annen_sky;
+mod annen_table;
 mod equal_error;
 mod finding;
 mod judge;
@@ -24,6 +28,7 @@ mod paper1;
 mod paper2;
 mod paper2_range;
 mod paper2_tiles;
+mod paper2_time;
 mod paper3;
 mod paper3_scaling;
 mod paper4;
@@ -31,6 +36,7 @@ mod paper4_quality;
 mod paper5;
 mod scenes;
 mod shader_work;
+mod tally;
 mod thesis;
 
 use thiserror::Error;
@@ -127,6 +133,7 @@ pub fn claims() -> impl Iterator<Item = &'static Claim> {
         paper3::CLAIMS,
         paper4::CLAIMS,
         paper5::CLAIMS,
+        annen::CLAIMS,
     ];
     papers.into_iter().flatten()
 }

@@ -3,8 +3,8 @@
 
 use std::ops::{Add, Div, Mul};
 
-use super::lab::{counters, pass_time, ratio};
 use super::scenes::{acute_triangle, cylinders};
+use super::tally::{counters, pass_time, ratio};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::render::Rendered;

@@ -1,6 +1,7 @@
 //! Paper II's figure 7: memory accesses against the size of culled tiles.
 
-use super::lab::{parsed, ratio};
+use super::lab::parsed;
+use super::tally::ratio;
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use crate::chart::{Axis, Chart, Series};
 use crate::tile_traffic::{TileTraffic, measure};

@@ -3,8 +3,8 @@
 
 use std::time::Instant;
 
-use super::lab::{bytes_of, counters, draws, ratio};
 use super::paper3_scaling as scaling;
+use super::tally::{bytes_of, counters, draws, ratio};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::metrics::visibility::ErrorSummary;

@@ -1,8 +1,8 @@
 //! Paper III: how the cost grows with pixels, lights and objects.
 
-use super::lab::{counters, invocations, pass_time, ratio, written};
 use super::paper3::TECHNIQUE;
 use super::scenes::{cylinders, lights, with_lights_scaled};
+use super::tally::{counters, invocations, pass_time, ratio, written};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::render::Rendered;
@@ -123,7 +123,7 @@ struct Cost {
 fn cost(lab: &Lab, scene: &Scene) -> Result<Cost, ReproduceError> {
     let done = lab.timed(scene, TECHNIQUE, &[])?;
     Ok(Cost {
-        draws: super::lab::draws(&done, "penumbra") as u64,
+        draws: super::tally::draws(&done, "penumbra") as u64,
         pixels: shaded(&done),
         bytes: counters(&done, &SHADOW).traffic.total_bytes(),
         time: pass_time(&done, &SHADOW),

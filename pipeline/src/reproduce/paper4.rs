@@ -1,10 +1,10 @@
 //! Paper IV: Assarsson, Dougherty, Mounier and Akenine-Möller, "An Optimized Soft
 //! Shadow Volume Algorithm with Real-Time Performance", 2003: cost and memory.
 
-use super::lab::{bytes_of, invocations, pass_time, ratio};
 use super::paper3_scaling as scaling;
 use super::paper4_quality as quality;
 use super::shader_work::{PAPER3_EXACT, PAPER3_TABLE, PAPER4_ARITHMETIC, PAPER4_TABLES, published};
+use super::tally::{bytes_of, invocations, pass_time, ratio};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict, paper3};
 use crate::scene::Scene;
 

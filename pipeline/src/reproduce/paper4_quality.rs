@@ -1,9 +1,9 @@
 //! Paper IV: overlaps at a pixel, and lights split into smaller ones.
 
 use super::equal_error::cost_of_error;
-use super::lab::{counters, pass_time};
 use super::overlaps::Overlaps;
 use super::paper4::TECHNIQUE;
+use super::tally::{counters, pass_time};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::render::Rendered;

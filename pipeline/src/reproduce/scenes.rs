@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::ReproduceError;
+use super::{Lab, ReproduceError};
 use crate::light::{Light, LightShape};
 use crate::mesh::{Mesh, Shading};
 use crate::scene::{Camera, Material, Object, Scene};
@@ -54,6 +54,56 @@ pub(super) fn lights(count: usize) -> Result<Scene, ReproduceError> {
     scene.lights = places.into_iter().take(count).map(light).collect();
     scene.name = format!("{count} lights");
     Ok(scene)
+}
+
+/// The built-in statue under so many equal square lights, spread over the sky in a
+/// spiral from the top to 20 degrees above the floor, all that look at it.
+pub(super) fn statue_lights(lab: &Lab, count: usize) -> Result<Scene, ReproduceError> {
+    const AWAY: f64 = 6.0;
+    const MIDDLE: DVec3 = DVec3::new(0.0, 1.1, 0.0);
+    const SIDE: f64 = 1.0;
+    let light = |k: usize| {
+        let y = 1.0 - 0.66 * (k as f64 + 0.5) / count as f64;
+        let angle = 0.9 + 2.399_963_229_728_653 * k as f64;
+        let ring = (1.0 - y * y).sqrt();
+        let towards = DVec3::new(ring * libm::cos(angle), y, ring * libm::sin(angle));
+        let edge_u = towards.any_orthonormal_vector() * SIDE;
+        Light {
+            shape: LightShape::Rectangle {
+                centre: MIDDLE + towards * AWAY,
+                edge_u,
+                edge_v: towards.cross(edge_u),
+            },
+            colour: [1.0 / count as f32; 3],
+        }
+    };
+    let mut scene = lab.scene("statue")?;
+    scene.lights = (0..count).map(light).collect();
+    scene.name = format!("statue under {count} lights");
+    Ok(scene)
+}
+
+/// Behind the wall of [`wall`] is where x is below this.
+pub(super) const WALL_BACK: f64 = -0.02;
+
+/// A thin wall on a floor, lit from the side by a square that faces it: at its foot
+/// what blocks is as near as can be, at the tip of its shadow it is far away.
+pub(super) fn wall() -> Result<Scene, ReproduceError> {
+    let size = DVec3::new(-2.0 * WALL_BACK, 1.2, 1.6);
+    let wall = shape::cuboid(DVec3::new(0.0, 0.599, 0.0), size);
+    let towards = DVec3::new(3.0, 3.0, 0.4);
+    let edge_u = DVec3::Z;
+    let light = Light {
+        shape: LightShape::Rectangle {
+            centre: towards,
+            edge_u,
+            edge_v: towards.cross(edge_u).normalize(),
+        },
+        colour: [1.0; 3],
+    };
+    let camera = Camera::look_at([-3.2, 3.2, 2.6], [-0.6, 0.2, 0.0]);
+    let wall = solid("wall", wall)?;
+    scene("wall".to_owned(), camera, light, vec![wall])
 }
 
 /// A flat triangle with an angle of 14 degrees, floating over a floor under a
@@ -134,7 +184,7 @@ mod tests {
 
     #[test]
     fn casters_are_closed_and_face_outwards() {
-        let scenes = [cylinders(16, 1.0), lights(4), acute_triangle()];
+        let scenes = [cylinders(16, 1.0), lights(4), acute_triangle(), wall()];
         for scene in scenes.map(Result::unwrap) {
             for caster in scene.casters() {
                 let report = EdgeAdjacency::new(caster.mesh.triangles()).closedness(&caster.mesh);

@@ -1,7 +1,8 @@
 //! The thesis's introduction: soft shadow volumes beside point samples of the light.
 
 use super::equal_error::cost_of_error;
-use super::lab::{Scored, counters, pass_time};
+use super::lab::Scored;
+use super::tally::{counters, pass_time};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use crate::render::Rendered;

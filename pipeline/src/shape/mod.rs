@@ -12,6 +12,7 @@ mod cylinder;
 mod diamond_square;
 mod icosphere;
 mod plane;
+mod statue;
 mod terrain;
 mod torus_knot;
 
@@ -23,6 +24,7 @@ pub use cylinder::cylinder;
 pub use diamond_square::diamond_square;
 pub use icosphere::icosphere;
 pub use plane::plane;
+pub use statue::statue;
 pub use terrain::{Terrain, terrain};
 pub use torus_knot::torus_knot;
 

@@ -13,6 +13,7 @@ pub(super) struct ReproduceDocument<'a> {
     simd: &'static str,
     skip: bool,
     repeat: u32,
+    full: bool,
     claims: Vec<ClaimDocument<'a>>,
 }
 
@@ -64,6 +65,7 @@ impl<'a> ReproduceDocument<'a> {
             simd: settings.gpu.simd.name(),
             skip: settings.gpu.skip,
             repeat: settings.repeat,
+            full: settings.full,
             claims: outcomes.iter().map(ClaimDocument::new).collect(),
         }
     }

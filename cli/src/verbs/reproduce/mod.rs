@@ -40,6 +40,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<(), CliError> {
         size: args.size,
         gpu: args.gpu.config(),
         repeat: args.repeat,
+        full: args.full,
     };
     files::check_target(&args.out_dir.join("plot.svg"))?;
     let start = Instant::now();

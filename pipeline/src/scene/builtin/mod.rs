@@ -14,6 +14,7 @@ mod parallel_plates;
 mod peers;
 mod soft_errors;
 mod spheres;
+mod statue;
 mod walk;
 
 use super::Scene;
@@ -74,6 +75,7 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("overlap", "two crossing bars: penumbrae that overlap are not to be summed", soft_errors::overlap),
     entry("creature", "biped of 15 overlapping closed parts", creature::scene),
     moving("walk", "animated: a creature walks round, a ball bounces, a knot and a beam turn (8 s)", walk::scene),
+    entry("statue", "a figure of 70,000 triangles with folds and cavities on a pedestal", statue::scene),
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),
     entry("adversarial-near-plane", "the near plane cuts a volume: z-pass needs depth clamp", adversarial::near_plane),

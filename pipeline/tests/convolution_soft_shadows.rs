@@ -13,6 +13,7 @@ use gnomon_pipeline::scene::{Material, Object, Scene, builtin};
 use gnomon_pipeline::shape;
 use gnomon_pipeline::technique::{Params, find};
 use gnomon_raster::{Counters, GpuConfig, SimdLevel};
+use gnomon_shaders::convolution::visibility::BELOW_THRESHOLD;
 
 const SIZE: [u32; 2] = [120, 80];
 
@@ -140,12 +141,15 @@ fn look_ups_are_counted_exactly() {
         (&["filter=mip", "m=16"], 1, 8),
         (&["filter=sat", "m=5"], 4, 3),
     ] {
-        let c = counted(&soft(&scene, set), "look-up");
+        let done = soft(&scene, set);
+        let c = counted(&done, "look-up");
         let fetches = &c.traffic.tex_fetches;
         let (shaded, written) = (c.fragment_shader_invocations, c.fragments.written);
         let reached = fetches[3] / per_image;
         assert!(written > 100 && written < reached && reached <= shaded);
         assert_eq!(c.fragments.discarded, shaded - written);
+        let below = done.figures.iter().find(|f| f.name == BELOW_THRESHOLD);
+        assert_eq!(below.unwrap().value, (reached - written) as f64, "{set:?}");
         let (first, last) = (per_image * images * reached, per_image * images * written);
         let expected = [shaded, first + last, first, per_image * reached];
         assert_eq!(fetches[..4], expected, "{set:?}");

@@ -6,7 +6,7 @@
 //! equal totals, in any order.
 
 use crate::format::Format;
-use crate::{MAX_COLOR_ATTACHMENTS, MAX_TEXTURES};
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_SHADER_COUNTS, MAX_TEXTURES};
 
 /// Accesses and bytes of one memory client.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -142,6 +142,11 @@ pub struct Counters {
     pub fragments: FragmentCounters,
     /// Fragment shader invocations, helper lanes left out.
     pub fragment_shader_invocations: u64,
+    /// What the fragment shader counted itself, in the order in which it declared
+    /// [`FragmentOutputs::counts`](crate::shader::FragmentOutputs::counts). In a sum
+    /// over draws only what shaders agree on means anything:
+    /// [`PassReport::shader_counts`](crate::PassReport::shader_counts) goes by name.
+    pub shader_counts: [u64; MAX_SHADER_COUNTS],
     /// zmin/zmax tests.
     pub tiles: TileCounters,
     /// Saturation, silent writes, NaN.
@@ -245,6 +250,8 @@ impl Counters {
         sum!(accesses: z_read, z_write, stencil_read, stencil_write, hiz_read, hiz_write);
         sum_each!(accesses: color_read, color_write, tex_fetch, tex_texel);
         sum_each!(traffic: tex_fetches);
+        let counts = self.shader_counts.iter_mut().zip(o.shader_counts);
+        counts.for_each(|(a, b)| *a += b);
         self.fragment_shader_invocations += o.fragment_shader_invocations;
         let t = &mut self.traffic;
         t.z.add(&o.traffic.z);

@@ -60,6 +60,8 @@ pub struct DrawReport {
     pub label: String,
     /// Its counters.
     pub counters: Counters,
+    /// Names of [`Counters::shader_counts`].
+    pub counted: &'static [&'static str],
 }
 
 /// What a render pass counted.
@@ -82,6 +84,22 @@ impl PassReport {
         let mut sum = Counters::default();
         self.draws.iter().for_each(|d| sum.add(&d.counters));
         sum
+    }
+
+    /// What fragment shaders counted themselves, by name, in the order of first
+    /// appearance.
+    #[must_use]
+    pub fn shader_counts(&self) -> Vec<(&'static str, u64)> {
+        let mut all: Vec<(&'static str, u64)> = Vec::new();
+        for d in &self.draws {
+            for (&name, n) in d.counted.iter().zip(d.counters.shader_counts) {
+                match all.iter_mut().find(|(known, _)| *known == name) {
+                    Some((_, sum)) => *sum += n,
+                    None => all.push((name, n)),
+                }
+            }
+        }
+        all
     }
 }
 

@@ -86,6 +86,8 @@ pub const MAX_COLOR_ATTACHMENTS: usize = 4;
 pub const MAX_VARYINGS: usize = 16;
 /// Most texture slots of a draw.
 pub const MAX_TEXTURES: usize = 8;
+/// Numbers that a fragment shader may count.
+pub const MAX_SHADER_COUNTS: usize = 4;
 /// Most user clip planes.
 pub const MAX_CLIP_PLANES: usize = 6;
 /// Largest width, height or depth of a texture, in texels.

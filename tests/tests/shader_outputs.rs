@@ -4,14 +4,16 @@
 use std::sync::Arc;
 
 use gnomon_raster::shader::{
-    Fragment, FragmentShader, FragmentStage, ScalarVertexOutput, VertexStage, per_vertex,
+    Fragment, FragmentOutputs, FragmentShader, FragmentStage, ScalarFragmentOutput,
+    ScalarVertexOutput, VertexStage, per_fragment, per_vertex,
 };
 use gnomon_raster::state::{
     BlendState, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState,
 };
 use gnomon_raster::{
-    ColorAttachment, CommandList, Counters, Draw, F32, Format, Gpu, GpuConfig, Lanes, LoadOp,
-    RenderPass, RenderPipeline, SimdLevel, StoreOp, Subresource, TextureDescriptor,
+    ColorAttachment, CommandList, Counters, Draw, Error, F32, Format, Gpu, GpuConfig, I32, Lanes,
+    LoadOp, PassReport, RenderPass, RenderPipeline, SimdLevel, StoreOp, Subresource,
+    TextureDescriptor,
 };
 
 const SIZE: u32 = 72;
@@ -67,6 +69,31 @@ impl FragmentShader for Plain {
     }
 }
 
+/// Counts odd columns and what it discards.
+struct Counting;
+
+impl FragmentShader for Counting {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentOutputs {
+            discards: true,
+            counts: &["odd columns", "left of 20"],
+            ..FragmentOutputs::default()
+        }
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let column = f.column();
+        let odd = (column & I32::splat(l, 1)).eq(I32::splat(l, 1));
+        f.count(0, odd);
+        let left = column.lt(I32::splat(l, 20));
+        f.discard(left);
+        f.count(1, left);
+        f.count(9, left);
+        f.set_color(0, [F32::splat(l, 1.0); 4]);
+    }
+}
+
 /// A triangle over most of the image and beyond its edges.
 fn corners() -> VertexStage {
     per_vertex(&[], |v| {
@@ -90,11 +117,22 @@ fn draw(fragment: FragmentStage, targets: Vec<ColorTargetState>) -> Draw {
     Draw::vertices_only("triangle", &Arc::new(pipeline), 3)
 }
 
-fn run(
+type Images = Vec<Vec<[u8; 4]>>;
+
+fn run(config: GpuConfig, formats: &[Format], draws: Vec<Draw>) -> (Images, Vec<Counters>) {
+    let (images, pass) = submit(config, formats, draws);
+    (images, pass.draws.iter().map(|d| d.counters).collect())
+}
+
+fn submit(config: GpuConfig, formats: &[Format], draws: Vec<Draw>) -> (Images, PassReport) {
+    try_submit(config, formats, draws).unwrap()
+}
+
+fn try_submit(
     config: GpuConfig,
     formats: &[Format],
     draws: Vec<Draw>,
-) -> (Vec<Vec<[u8; 4]>>, Vec<Counters>) {
+) -> Result<(Images, PassReport), Error> {
     let mut gpu = Gpu::new(config).unwrap();
     let textures: Vec<_> = formats
         .iter()
@@ -109,16 +147,14 @@ fn run(
         load: LoadOp::Clear([0.25, 0.5, 0.75, 1.0]),
         store: StoreOp::Store,
     });
-    let report = gpu
-        .submit(&CommandList {
-            passes: vec![RenderPass {
-                label: "main".into(),
-                color: color.collect(),
-                depth_stencil: None,
-                draws,
-            }],
-        })
-        .unwrap();
+    let mut report = gpu.submit(&CommandList {
+        passes: vec![RenderPass {
+            label: "main".into(),
+            color: color.collect(),
+            depth_stencil: None,
+            draws,
+        }],
+    })?;
     let read = |&t| {
         let texels = gpu
             .texture(t)
@@ -130,8 +166,7 @@ fn run(
             .map(|t| t.0.map(|c| (c * 255.0) as u8))
             .collect()
     };
-    let counters = report.passes[0].draws.iter().map(|d| d.counters).collect();
-    (textures.iter().map(read).collect(), counters)
+    Ok((textures.iter().map(read).collect(), report.passes.remove(0)))
 }
 
 #[test]
@@ -158,6 +193,61 @@ fn outputs_that_are_not_set_are_zero_whatever_was_drawn_before() {
             assert!(images[1].iter().all(|t| *t != [255; 4]), "drawn over");
         }
     }
+}
+
+/// Fragments are counted, helper lanes are not, and reports give them by name.
+#[test]
+fn shaders_count_fragments() {
+    let mut before = None;
+    for simd in SimdLevel::available() {
+        for (threads, tile) in [(1, 16), (4, 64)] {
+            let config = GpuConfig {
+                threads,
+                tile,
+                simd,
+                ..GpuConfig::default()
+            };
+            let opaque = vec![ColorTargetState::OPAQUE];
+            let twice = vec![
+                draw(Counting.into(), opaque.clone()),
+                draw(Counting.into(), opaque),
+            ];
+            let (images, pass) = submit(config, &[Format::Rgba8Unorm], twice);
+            let covered = |at: &usize| images[0][*at] == [255; 4];
+            let written = (0..images[0].len()).filter(covered);
+            let odd = written.filter(|at| at % 2 == 1).count() as u64;
+            let counts = pass.shader_counts();
+            let c = pass.draws[0].counters;
+            assert_eq!(counts[1], ("left of 20", 2 * c.fragments.discarded));
+            assert!(c.fragments.discarded > 100 && c.fragments.discarded % 64 != 0);
+            // Those left of 20 are counted too, before they are discarded.
+            assert_eq!(counts[0].0, "odd columns");
+            let hidden = counts[0].1 / 2 - odd;
+            assert!(hidden * 2 > c.fragments.discarded * 9 / 10, "{hidden}");
+            assert!(hidden < c.fragments.discarded, "{hidden}");
+            assert_eq!(c.shader_counts[2..], [0, 0]);
+            assert_eq!(*before.get_or_insert(counts.clone()), counts);
+        }
+    }
+}
+
+/// A shader may count four things; more are refused.
+#[test]
+fn more_counts_than_there_are_places_are_refused() {
+    let shader = per_fragment(
+        FragmentOutputs {
+            counts: &["a", "b", "c", "d", "e"],
+            ..FragmentOutputs::default()
+        },
+        |_| ScalarFragmentOutput::color([1.0; 4]),
+    );
+    let list = vec![draw(shader, vec![ColorTargetState::OPAQUE])];
+    let error = try_submit(GpuConfig::default(), &[Format::Rgba8Unorm], list).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.contains("counts") && text.contains('5') && text.contains('4'),
+        "{text}"
+    );
 }
 
 #[test]

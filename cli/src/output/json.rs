@@ -85,6 +85,8 @@ struct Times {
 #[derive(Clone, Debug, Serialize)]
 struct PassDocument {
     name: String,
+    /// What fragment shaders counted themselves.
+    shader_counts: Object<u64>,
     #[serde(flatten)]
     work: WorkDocument,
 }
@@ -272,9 +274,15 @@ impl PassDocument {
     fn new(pass: &PassReport) -> Self {
         Self {
             name: pass.label.clone(),
+            shader_counts: Object(named_counts(pass)),
             work: WorkDocument::new(pass.draws.len(), &pass.totals(), &pass.clear),
         }
     }
+}
+
+fn named_counts(pass: &PassReport) -> Vec<(String, u64)> {
+    let counts = pass.shader_counts().into_iter();
+    counts.map(|(name, n)| (name.to_owned(), n)).collect()
 }
 
 impl WorkDocument {

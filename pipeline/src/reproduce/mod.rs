@@ -125,7 +125,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 7] = [
+    let papers: [&'static [Claim]; 8] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,

@@ -247,7 +247,8 @@ fn further_tests(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         counted: format!(
             "depth reads of all wedge draws, three passes, tiles of 8: {BYTES}. The further \
              tests are the wedge's range of depth and the axes of edge pairs, together; the \
-             range alone, of which the paper says that it is much worse, is not measured"
+             range alone, of which the paper says that it is much worse, is measured by \
+             paper2-depth-range"
         ),
         measures: vec![
             Measure::new(

@@ -1,7 +1,8 @@
 //! Paper II, §4: the quick rejection test of tiles, the wedge's range of depth.
 
-use super::lab::{parsed, ratio};
+use super::lab::parsed;
 use super::paper2_tiles::TECHNIQUE;
+use super::tally::ratio;
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::tile_traffic::{self, TileTraffic};
 

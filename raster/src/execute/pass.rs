@@ -50,6 +50,10 @@ pub(super) fn execute(
             .map(|(d, counters)| DrawReport {
                 label: d.label.clone(),
                 counters,
+                counted: match &d.pipeline.fragment {
+                    Some(f) => f.0.outputs().counts,
+                    None => &[],
+                },
             })
             .collect(),
         clear,

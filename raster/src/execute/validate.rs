@@ -8,8 +8,8 @@ use crate::gpu::Gpu;
 use crate::state::{BlendFactor, BlendState, DepthStencilState, ScissorRect, Viewport};
 use crate::texture::{Texture, TextureId};
 use crate::{
-    MAX_CLIP_PLANES, MAX_COLOR_ATTACHMENTS, MAX_DRAW_VERTICES, MAX_INSTANCES, MAX_TEXTURES,
-    MAX_VARYINGS,
+    MAX_CLIP_PLANES, MAX_COLOR_ATTACHMENTS, MAX_DRAW_VERTICES, MAX_INSTANCES, MAX_SHADER_COUNTS,
+    MAX_TEXTURES, MAX_VARYINGS,
 };
 
 /// Widest line and largest point, in pixels.
@@ -260,11 +260,15 @@ fn depth_state(d: &Draw) -> Result<(), Error> {
 
 fn textures(gpu: &Gpu, attached: &[TextureId], d: &Draw) -> Result<(), Error> {
     limit(d, "the number of textures", d.textures.len(), MAX_TEXTURES)?;
-    let reads = d
-        .pipeline
-        .fragment
-        .as_ref()
-        .map_or(0, |f| f.0.outputs().textures);
+    let outputs = d.pipeline.fragment.as_ref().map(|f| f.0.outputs());
+    let outputs = outputs.unwrap_or_default();
+    let (reads, counts) = (outputs.textures, outputs.counts.len());
+    limit(
+        d,
+        "the number of counts of the shader",
+        counts,
+        MAX_SHADER_COUNTS,
+    )?;
     limit(
         d,
         "the number of texture slots the shader reads",

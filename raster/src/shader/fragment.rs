@@ -2,8 +2,9 @@
 
 use crate::command::BoundTexture;
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32};
+use crate::tile::COUNT;
 use crate::tile::ShaderDepth;
-use crate::{MAX_COLOR_ATTACHMENTS, MAX_TEXTURES, MAX_VARYINGS};
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_SHADER_COUNTS, MAX_TEXTURES, MAX_VARYINGS};
 
 /// What a fragment shader may do; the tests that run before it depend on this.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,6 +15,9 @@ pub struct FragmentOutputs {
     pub depth: bool,
     /// Texture slots that it reads: `0..textures`.
     pub textures: usize,
+    /// Names of what it counts with [`Fragment::count`]; at most
+    /// [`MAX_SHADER_COUNTS`](crate::MAX_SHADER_COUNTS).
+    pub counts: &'static [&'static str],
 }
 
 /// Computes colours, 16 fragments (an 8×2 strip, whole quads) at a time.
@@ -67,13 +71,15 @@ impl PacketOutput {
     };
 }
 
-/// Texture traffic of a shader, by slot.
+/// Texture traffic of a shader, by slot, and what it counts itself.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ShaderEvents {
     /// Texture look-ups of live lanes.
     pub(crate) fetches: [u64; MAX_TEXTURES],
     /// Texels that those look-ups read.
     pub(crate) texels: [u64; MAX_TEXTURES],
+    /// In the order of [`FragmentOutputs::counts`].
+    pub(crate) counts: [u64; MAX_SHADER_COUNTS],
 }
 
 /// In [`Fragment::set`].
@@ -276,6 +282,15 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     #[inline(always)]
     pub fn discard(&mut self, mask: Mask<L>) {
         self.out.discarded |= mask.bits();
+    }
+
+    /// Adds the fragments among `lanes` to the count number `i` of those declared;
+    /// a count beyond [`MAX_SHADER_COUNTS`](crate::MAX_SHADER_COUNTS) is none.
+    #[inline(always)]
+    pub fn count(&mut self, i: usize, lanes: Mask<L>) {
+        if COUNT && let Some(n) = self.events.counts.get_mut(i) {
+            *n += u64::from((lanes.bits() & self.live).count_ones());
+        }
     }
 
     /// Integer pixel column of each lane.

@@ -4,7 +4,7 @@ use super::fragment::{Fragment, FragmentOutputs, FragmentShader};
 use super::vertex::{Vertex, VertexShader};
 use super::{FragmentStage, Interpolation, VertexStage};
 use crate::simd::{F32, LANES, Lanes, Mask};
-use crate::{MAX_COLOR_ATTACHMENTS, MAX_VARYINGS};
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_SHADER_COUNTS, MAX_VARYINGS};
 
 /// One vertex, for a closure given to [`per_vertex`].
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +54,8 @@ pub struct ScalarFragmentOutput {
     pub depth: f32,
     /// Throw the fragment away, where declared.
     pub discard: bool,
+    /// To which of the declared counts it adds.
+    pub counted: [bool; MAX_SHADER_COUNTS],
 }
 
 impl ScalarFragmentOutput {
@@ -144,6 +146,7 @@ where
         let (depth, w) = (f.depth().to_array(), f.w().to_array());
         let (columns, rows) = (f.column().to_array(), f.row().to_array());
         let mut discarded = 0u16;
+        let mut counted = [0u16; MAX_SHADER_COUNTS];
         for lane in (0..LANES)
             .filter(|lane| f.live().bits() >> lane & 1 != 0)
             .collect::<Vec<_>>()
@@ -159,6 +162,9 @@ where
             });
             f.out.depth[lane] = out.depth;
             discarded |= u16::from(out.discard) << lane;
+            for (lanes, adds) in counted.iter_mut().zip(out.counted) {
+                *lanes |= u16::from(adds) << lane;
+            }
             for (target, color) in f.out.color.iter_mut().zip(out.color) {
                 for (channel, c) in target.iter_mut().zip(color) {
                     channel[lane] = c;
@@ -168,6 +174,9 @@ where
         f.set = u32::MAX;
         if self.outputs.discards {
             f.discard(Mask::from_bits(l, discarded));
+        }
+        for (i, lanes) in counted.into_iter().enumerate() {
+            f.count(i, Mask::from_bits(l, lanes));
         }
     }
 }

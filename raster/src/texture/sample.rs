@@ -465,7 +465,7 @@ impl<L: Lanes> Fragment<'_, L> {
         };
         let counted = self.counted_lanes();
         let (value, texels) = look_up(l, bound, counted, &coord, detail);
-        self.count(slot, texels);
+        self.count_fetches(slot, texels);
         value
     }
 
@@ -479,7 +479,7 @@ impl<L: Lanes> Fragment<'_, L> {
     ) -> Option<(&Texture, Fetched)> {
         let texture = self.textures.get(slot)?.texture;
         let f = fetch_words(texture, aspect, at, mip);
-        self.count(
+        self.count_fetches(
             slot,
             u64::from((f.inside & self.counted_lanes()).count_ones()),
         );
@@ -488,7 +488,7 @@ impl<L: Lanes> Fragment<'_, L> {
 
     /// One fetch a fragment, and the texels that these read.
     #[inline(always)]
-    fn count(&mut self, slot: usize, texels: u64) {
+    fn count_fetches(&mut self, slot: usize, texels: u64) {
         if !COUNT {
             return;
         }

@@ -60,6 +60,7 @@ impl TileStageCounters {
             tiles: self.tiles,
             events: self.events,
             accesses,
+            shader_counts: self.shader.counts,
             ..Counters::default()
         }
     }

@@ -20,13 +20,18 @@ pub struct Sharpening {
     pub falloff: f32,
 }
 
+/// Name of the count of fragments whose 1 − s is below the threshold, and which are
+/// lit for that.
+pub const BELOW_THRESHOLD: &str = "lit-below-threshold";
+
 /// Visibility of a rectangular light, to red of attachment 0.
 ///
 /// Texture 0 holds positions (w is 0 where no shadow falls); slots of the images are
 /// theirs. A fragment is discarded before any other look-up where nothing can be in
 /// the light's way: no shadow falls there, it is not beyond the view's near distance,
-/// or all of its first kernel is outside the view. It is discarded before the last look-ups where 1 − s is below the
-/// threshold. The attachment must hold 1 before.
+/// or all of its first kernel is outside the view. It is discarded before the last
+/// look-ups, and counted as [`BELOW_THRESHOLD`], where 1 − s is below the threshold.
+/// The attachment must hold 1 before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConvolutionShadow<P> {
     /// From world to light view.
@@ -151,6 +156,7 @@ impl<P: Prefiltered> FragmentShader for ConvolutionShadow<P> {
         FragmentOutputs {
             discards: true,
             textures: 4,
+            counts: &[BELOW_THRESHOLD],
             ..FragmentOutputs::default()
         }
     }
@@ -185,7 +191,9 @@ impl<P: Prefiltered> FragmentShader for ConvolutionShadow<P> {
             }
             let weighted = self.blocked_depth(l, f, &terms, &window);
             let blocked = self.blocked(l, f, &terms, &window);
-            lit = lit | !(blocked * P::share(&window)).ge(F32::splat(l, self.threshold));
+            let below = !lit & !(blocked * P::share(&window)).ge(F32::splat(l, self.threshold));
+            f.count(0, below);
+            lit = lit | below;
             f.discard(lit);
             let depth = (weighted / blocked) * (1.0 / reach);
             average = depth.max(zero).min(scaled);

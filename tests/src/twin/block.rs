@@ -222,6 +222,7 @@ impl Block<'_> {
         let mut left = Vec::new();
         for mut f in fragments {
             self.counters.fragment_shader_invocations += 1;
+            self.counters.shader_counts[0] += u64::from(f.x % 2);
             let (looked_up, reads) = self.look_ups(program, &f);
             let out = program.shade(&self.shaded(f.x, f.y), &looked_up);
             if !(out.discard && program.discards_first) {
@@ -229,6 +230,7 @@ impl Block<'_> {
             }
             if out.discard {
                 self.counters.fragments.discarded += 1;
+                self.counters.shader_counts[1] += 1;
                 continue;
             }
             if program.depth.is_some() {

@@ -104,6 +104,8 @@ impl FragmentShader for LaneProgram {
 
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let one = I32::splat(l, 1);
+        f.count(0, (f.column() & one).eq(one));
         let mut values = [[F32::splat(l, 0.0); 4]; MAX_LOOK_UPS];
         if self.0.discards_first {
             self.discard(l, f, &values);
@@ -130,6 +132,7 @@ impl LaneProgram {
         if let Some(d) = self.0.discard {
             let mask = discards(d, l, f, values);
             f.discard(mask);
+            f.count(1, mask);
         }
     }
 

@@ -128,6 +128,7 @@ impl Program {
             discards: self.discard.is_some(),
             depth: self.depth.is_some(),
             textures: self.textures,
+            counts: &["odd columns", "discarded"],
         }
     }
 
@@ -139,6 +140,7 @@ impl Program {
             discard: self.discard.is_some_and(|d| discards(d, f, looked_up)),
             ..ScalarFragmentOutput::default()
         };
+        (out.counted[0], out.counted[1]) = (f.x % 2 == 1, out.discard);
         for o in 0..self.outputs {
             out.color[o] = if self.uint[o] {
                 [self.integer(o, f, looked_up); 4]

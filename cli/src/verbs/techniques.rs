@@ -62,8 +62,13 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
             text += &hanging(&" ".repeat(8), 8, p.summary);
         }
     }
-    text += "\nShown are the defaults, in brackets the values that are taken.\n\
-             N is any whole number from 0, N+N several, X any decimal one, TECHNIQUE a technique:\n\
-             NAME:KEY=VALUE:...";
+    text.push('\n');
+    text += &hanging(
+        "",
+        0,
+        "Shown are the defaults, in brackets the values that are taken. N is any whole \
+         number from 0, N+N several, X any decimal one, TECHNIQUE a technique: \
+         NAME:KEY=VALUE:...",
+    );
     output::print(&text)
 }

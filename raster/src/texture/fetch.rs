@@ -1,7 +1,7 @@
 //! Reading texels: gathers, one lane at a time, and decoding, over lanes.
 
 use super::plane::{Block, Block4, ColorBlocks, Plane};
-use super::{BLOCK, Layout, Texture};
+use super::{BLOCK, Texture};
 use crate::format::{D24_MAX, Format};
 use crate::simd::{F32, I32, LANES, Lanes, U32, each4};
 
@@ -10,8 +10,10 @@ pub(super) struct Texels<'a> {
     pub(super) mip: u32,
     /// Slices or faces.
     pub(super) layer: &'a [i32; LANES],
-    pub(super) x: &'a [i32; LANES],
-    pub(super) y: &'a [i32; LANES],
+    /// Index of the texel in its layer's storage ([`Layout::locate_lanes`]).
+    ///
+    /// [`Layout::locate_lanes`]: super::Layout::locate_lanes
+    pub(super) at: &'a [u32; LANES],
     /// Lanes that read; the indices of the others may be anything.
     pub(super) lanes: u16,
 }
@@ -26,13 +28,14 @@ pub(super) enum Aspect {
 }
 
 /// Words by lane: packed formats in the first, others a channel a word.
-type Words = [[u32; LANES]; 4];
+pub(super) type Words = [[u32; LANES]; 4];
 
-/// The stored bits of texels, 0 in lanes that do not read. It does not depend on
-/// the instruction set.
-pub(super) fn gather(texture: &Texture, aspect: Aspect, t: &Texels<'_>) -> Words {
-    let mut words = [[0; LANES]; 4];
-    let layout = &texture.layouts[t.mip as usize];
+/// Where [`gather`] puts them: 256 bytes, filled in place.
+pub(super) const NO_WORDS: Words = [[0; LANES]; 4];
+
+/// Puts the stored bits of texels into `words`, which hold zeros; lanes that do not
+/// read are left alone. It does not depend on the instruction set.
+pub(super) fn gather(texture: &Texture, aspect: Aspect, t: &Texels<'_>, words: &mut Words) {
     let planes = &texture.planes[t.mip as usize];
     let mut rest = t.lanes;
     while rest != 0 {
@@ -43,14 +46,12 @@ pub(super) fn gather(texture: &Texture, aspect: Aspect, t: &Texels<'_>) -> Words
             rest & same_layer(t.layer, layer)
         };
         let source = Source {
-            layout,
-            t,
+            at: t.at,
             lanes: same,
         };
-        source.take_plane(&planes[layer as usize], aspect, &mut words);
+        source.take_plane(&planes[layer as usize], aspect, words);
         rest &= !same;
     }
-    words
 }
 
 fn same_layer(layers: &[i32; LANES], layer: i32) -> u16 {
@@ -62,8 +63,7 @@ fn same_layer(layers: &[i32; LANES], layer: i32) -> u16 {
 
 /// The lanes that read from one plane.
 struct Source<'a> {
-    layout: &'a Layout,
-    t: &'a Texels<'a>,
+    at: &'a [u32; LANES],
     lanes: u16,
 }
 
@@ -81,10 +81,11 @@ impl Source<'_> {
         }
     }
 
+    /// Block, and place in it.
     #[inline(always)]
     fn place(&self, lane: usize) -> (usize, usize) {
-        self.layout
-            .locate(self.t.x[lane] as u32, self.t.y[lane] as u32)
+        let at = self.at[lane] as usize;
+        (at / TEXELS, at % TEXELS)
     }
 
     #[inline(always)]
@@ -131,28 +132,27 @@ impl Source<'_> {
     /// packet of fragments that each read their own pixel.
     #[inline(always)]
     fn run(&self) -> Option<(usize, usize)> {
-        let (x, y) = (self.t.x, self.t.y);
-        let mut off = (x[0] & (ROW - 1)) | (y[0] & (LANES as i32 / ROW - 1));
+        let first = self.at[0];
+        let mut off = first % LANES as u32;
         for lane in 0..LANES {
-            let step = lane as i32;
-            off |= x[lane].wrapping_sub(x[0]) ^ (step % ROW);
-            off |= y[lane].wrapping_sub(y[0]) ^ (step / ROW);
+            off |= self.at[lane].wrapping_sub(first) ^ lane as u32;
         }
         (self.lanes == u16::MAX && off == 0).then(|| self.place(0))
     }
 }
 
-/// Pixels in a row of a block.
-const ROW: i32 = BLOCK as i32;
+/// Texels of a block.
+const TEXELS: usize = (BLOCK * BLOCK) as usize;
 
 /// As many words as there are lanes, from `first` on.
 #[inline(always)]
 fn copy<T: Copy + Into<u32>>(channel: &[T], first: usize, out: &mut [u32; LANES]) {
-    let Some(run) = channel.get(first..first + LANES) else {
+    let run = channel.get(first..first + LANES);
+    let Some(Ok(run)) = run.map(<&[T; LANES]>::try_from) else {
         return;
     };
-    for (out, word) in out.iter_mut().zip(run) {
-        *out = (*word).into();
+    for k in 0..LANES {
+        out[k] = run[k].into();
     }
 }
 
@@ -279,14 +279,20 @@ mod tests {
             let texels: Vec<_> = (0..40 * 24).map(texel).collect();
             texture.write_color(Default::default(), &texels).unwrap();
             let gather_at = |x: &[i32; LANES], y: &[i32; LANES], lanes| {
+                let layout = &texture.layouts[0];
+                let at = core::array::from_fn(|k| {
+                    let (block, place) = layout.locate(x[k] as u32, y[k] as u32);
+                    (block * TEXELS + place) as u32
+                });
                 let texels = Texels {
                     mip: 0,
                     layer: &[0; LANES],
-                    x,
-                    y,
+                    at: &at,
                     lanes,
                 };
-                gather(&texture, Aspect::Main, &texels)
+                let mut words = NO_WORDS;
+                gather(&texture, Aspect::Main, &texels, &mut words);
+                words
             };
             for (x0, y0) in [(0, 0), (8, 2), (32, 22), (3, 2), (8, 5), (24, 16)] {
                 let x = core::array::from_fn(|k| x0 + k as i32 % 8);

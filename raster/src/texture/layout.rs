@@ -6,6 +6,8 @@
 //! *contiguous* in memory, and a target splits into disjoint `&mut` slices, one
 //! a tile, without a lock or a line of `unsafe`.
 
+use crate::simd::{I32, Lanes, U32};
+
 /// Side of a storage block in pixels.
 pub const BLOCK: u32 = 8;
 
@@ -61,6 +63,22 @@ impl Layout {
         )
     }
 
+    /// Index of pixels among all that are stored, over lanes: 64 times the block's, and
+    /// the place in it. Coordinates outside the plane give any index.
+    #[inline(always)]
+    pub(crate) fn locate_lanes<L: Lanes>(&self, x: I32<L>, y: I32<L>) -> U32<L> {
+        let l = x.l;
+        let (in_block, in_super) = (
+            I32::splat(l, BLOCK as i32 - 1),
+            I32::splat(l, (1 << self.order) - 1),
+        );
+        let (bx, by) = (x >> 3, y >> 3);
+        let across = I32::splat(l, self.across as i32);
+        let superblock = (by >> self.order) * across + (bx >> self.order);
+        let block = superblock << (2 * self.order) | morton_lanes(bx & in_super, by & in_super);
+        (block << 6 | (y & in_block) << 3 | (x & in_block)).to_u32()
+    }
+
     /// Execution tiles of at most `side` pixels, in storage order: each is a run
     /// of `tile_blocks(side)` blocks.
     pub(crate) fn tile_side(&self, side: u32) -> u32 {
@@ -95,6 +113,19 @@ pub(crate) fn morton(x: u32, y: u32) -> usize {
 fn spread(v: u32) -> u32 {
     let v = (v | (v << 2)) & 0x33;
     (v | (v << 1)) & 0x55
+}
+
+/// The same over lanes.
+#[inline(always)]
+pub(crate) fn morton_lanes<L: Lanes>(x: I32<L>, y: I32<L>) -> I32<L> {
+    spread_lanes(x) | spread_lanes(y) << 1
+}
+
+#[inline(always)]
+fn spread_lanes<L: Lanes>(v: I32<L>) -> I32<L> {
+    let l = v.l;
+    let v = (v | (v << 2)) & I32::splat(l, 0x33);
+    (v | (v << 1)) & I32::splat(l, 0x55)
 }
 
 /// The (x, y) of a Z-order index below 256.

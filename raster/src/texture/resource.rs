@@ -104,6 +104,7 @@ impl Texture {
 
     /// Width, height and depth (or 1) of level `mip` in texels.
     #[must_use]
+    #[inline]
     pub fn mip_size(&self, mip: u32) -> [u32; 3] {
         mip_size(&self.desc, mip)
     }
@@ -350,8 +351,12 @@ fn pixels(l: &Layout) -> impl Iterator<Item = (u32, u32)> + use<> {
     (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
 }
 
+#[inline]
 fn mip_size(desc: &TextureDescriptor, mip: u32) -> [u32; 3] {
-    desc.size.map(|s| (s >> mip.min(31)).max(1))
+    // Not `map`, which is a call of its own in the code of a wide level.
+    let [w, h, d] = desc.size;
+    let mip = mip.min(31);
+    [(w >> mip).max(1), (h >> mip).max(1), (d >> mip).max(1)]
 }
 
 /// Layout of the images of a level, and their number.

@@ -8,7 +8,7 @@
 
 use super::address::Axis;
 use super::cube::{self, Face};
-use super::fetch::{self, Aspect, Texels, decode, gather};
+use super::fetch::{self, Aspect, NO_WORDS, Texels, Words, decode, gather};
 use super::lod::{self, Detail, Levels};
 use super::{Texture, TextureDimension};
 use crate::command::{AddressMode, BoundTexture, Sampler};
@@ -197,17 +197,24 @@ impl<L: Lanes> LookUp<'_, L> {
         if COUNT {
             self.texels += u64::from((read & self.counted).count_ones());
         }
-        let (mut x, mut y) = (on[0].index[i].to_array(), on[1].index[j].to_array());
+        let (mut x, mut y) = (on[0].index[i], on[1].index[j]);
         let mut layer = on[2].index[k].to_array();
         if self.texture.desc.dimension == TextureDimension::Cube {
             layer = point.face.to_array();
-            fold_lanes(&mut layer, &mut x, &mut y, self.texture.mip_size(level)[0]);
+            let (mut columns, mut rows) = (x.to_array(), y.to_array());
+            let size = self.texture.mip_size(level)[0];
+            fold_lanes(&mut layer, &mut columns, &mut rows, size);
+            (x, y) = (
+                I32::from_array(self.l, &columns),
+                I32::from_array(self.l, &rows),
+            );
         }
         let t = Texels {
             mip: level,
             layer: &layer,
-            x: &x,
-            y: &y,
+            at: &self.texture.layouts[level as usize]
+                .locate_lanes(x, y)
+                .to_array(),
             lanes: read,
         };
         self.bordered(read_texels(self.l, self.texture, &t), inside)
@@ -301,7 +308,8 @@ fn axis_of<L: Lanes>(
 /// Decoded texels.
 #[inline(never)]
 fn read_texels<L: Lanes>(l: L, texture: &Texture, t: &Texels<'_>) -> [F32<L>; 4] {
-    let words = gather(texture, Aspect::Main, t);
+    let mut words = NO_WORDS;
+    gather(texture, Aspect::Main, t, &mut words);
     outlined(
         l,
         #[inline(always)]
@@ -320,35 +328,26 @@ fn fold_lanes(layer: &mut [i32; LANES], x: &mut [i32; LANES], y: &mut [i32; LANE
     }
 }
 
-/// What an integer fetch found.
-pub(super) struct Fetched {
-    pub(super) words: [[u32; LANES]; 4],
-    /// Lanes whose texel exists.
-    pub(super) inside: u16,
-}
-
-/// Stored bits at integer coordinates of level `mip`; 0 outside the texture.
+/// Puts the stored bits at integer coordinates of level `mip` into `words`, which hold
+/// zeros; gives the lanes whose texel exists.
 #[inline(always)]
 pub(super) fn fetch_words<L: Lanes>(
     texture: &Texture,
     aspect: Aspect,
     at: [I32<L>; 3],
     mip: u32,
-) -> Fetched {
-    let none = Fetched {
-        words: [[0; LANES]; 4],
-        inside: 0,
-    };
+    words: &mut Words,
+) -> u16 {
     let has_aspect = aspect == Aspect::Main || texture.desc.format.is_depth_stencil();
     if mip >= texture.desc.mip_levels || !has_aspect {
-        return none;
+        return 0;
     }
     let [w, h, _] = texture.mip_size(mip);
     let layers = texture.planes[mip as usize].len() as u32;
     let mut inside = fetch::inside(at[0], w);
-    let (x, mut y, mut layer) = (at[0].to_array(), at[1].to_array(), at[2].to_array());
+    let (x, mut y, mut layer) = (at[0], at[1], at[2].to_array());
     match texture.desc.dimension {
-        TextureDimension::D1 => (y, layer) = ([0; LANES], [0; LANES]),
+        TextureDimension::D1 => (y, layer) = (I32::splat(x.l, 0), [0; LANES]),
         TextureDimension::D2 => {
             inside &= fetch::inside(at[1], h);
             layer = [0; LANES];
@@ -360,22 +359,24 @@ pub(super) fn fetch_words<L: Lanes>(
     let t = Texels {
         mip,
         layer: &layer,
-        x: &x,
-        y: &y,
+        at: &texture.layouts[mip as usize].locate_lanes(x, y).to_array(),
         lanes: inside,
     };
-    Fetched {
-        words: gather(texture, aspect, &t),
-        inside,
-    }
+    gather(texture, aspect, &t, words);
+    inside
 }
 
 /// Decoded texels; zero in all channels outside.
 #[inline(always)]
-pub(super) fn decode_fetched<L: Lanes>(l: L, texture: &Texture, f: &Fetched) -> [F32<L>; 4] {
-    let inside = Mask::from_bits(l, f.inside);
+pub(super) fn decode_fetched<L: Lanes>(
+    l: L,
+    texture: &Texture,
+    words: &Words,
+    inside: u16,
+) -> [F32<L>; 4] {
+    let inside = Mask::from_bits(l, inside);
     let zero = F32::splat(l, 0.0);
-    let mut v = decode(l, texture.desc.format, &f.words);
+    let mut v = decode(l, texture.desc.format, words);
     for c in &mut v {
         *c = inside.select_f32(c.canonical_nan(), zero);
     }
@@ -419,10 +420,11 @@ impl<L: Lanes> Fragment<'_, L> {
     #[inline(always)]
     pub fn fetch_texel(&mut self, slot: usize, at: [I32<L>; 3], mip: u32) -> [F32<L>; 4] {
         let l = self.lanes();
-        let Some((texture, f)) = self.fetch(slot, Aspect::Main, at, mip) else {
-            return [F32::splat(l, 0.0); 4];
-        };
-        decode_fetched(l, texture, &f)
+        let mut words = NO_WORDS;
+        match self.fetch(slot, Aspect::Main, at, mip, &mut words) {
+            Some((texture, inside)) => decode_fetched(l, texture, &words, inside),
+            None => [F32::splat(l, 0.0); 4],
+        }
     }
 
     /// The stored bits of the first channel of a texel: the integer of
@@ -431,10 +433,9 @@ impl<L: Lanes> Fragment<'_, L> {
     #[inline(always)]
     pub fn fetch_texel_bits(&mut self, slot: usize, at: [I32<L>; 3], mip: u32) -> U32<L> {
         let l = self.lanes();
-        match self.fetch(slot, Aspect::Main, at, mip) {
-            Some((_, f)) => U32::from_array(l, &f.words[0]),
-            None => U32::splat(l, 0),
-        }
+        let mut words = NO_WORDS;
+        self.fetch(slot, Aspect::Main, at, mip, &mut words);
+        U32::from_array(l, &words[0])
     }
 
     /// The stencil value of a texel of a depth-stencil texture. Zero outside and
@@ -442,10 +443,9 @@ impl<L: Lanes> Fragment<'_, L> {
     #[inline(always)]
     pub fn fetch_stencil(&mut self, slot: usize, at: [I32<L>; 3], mip: u32) -> U32<L> {
         let l = self.lanes();
-        match self.fetch(slot, Aspect::Stencil, at, mip) {
-            Some((_, f)) => U32::from_array(l, &f.words[0]),
-            None => U32::splat(l, 0),
-        }
+        let mut words = NO_WORDS;
+        self.fetch(slot, Aspect::Stencil, at, mip, &mut words);
+        U32::from_array(l, &words[0])
     }
 
     /// Width, height and depth of level `mip` in texels; zeros without one.
@@ -476,14 +476,13 @@ impl<L: Lanes> Fragment<'_, L> {
         aspect: Aspect,
         at: [I32<L>; 3],
         mip: u32,
-    ) -> Option<(&Texture, Fetched)> {
+        words: &mut Words,
+    ) -> Option<(&Texture, u16)> {
         let texture = self.textures.get(slot)?.texture;
-        let f = fetch_words(texture, aspect, at, mip);
-        self.count_fetches(
-            slot,
-            u64::from((f.inside & self.counted_lanes()).count_ones()),
-        );
-        Some((texture, f))
+        let inside = fetch_words(texture, aspect, at, mip, words);
+        let texels = u64::from((inside & self.counted_lanes()).count_ones());
+        self.count_fetches(slot, texels);
+        Some((texture, inside))
     }
 
     /// One fetch a fragment, and the texels that these read.

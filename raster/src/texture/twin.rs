@@ -1,7 +1,7 @@
 //! `docs/texture-rules.md` a second time, one lookup at a time and slowly, and
 //! the tests that hold the lanes against it.
 
-use super::fetch::Aspect;
+use super::fetch::{Aspect, NO_WORDS};
 use super::lod::Detail;
 use super::sample::{decode_fetched, fetch_words, look_up};
 use super::{Subresource, Texture, TextureDescriptor, TextureDimension};
@@ -513,8 +513,10 @@ fn fetches_find_every_texel_and_nothing_outside() {
         });
         for simd in SimdLevel::available() {
             let (got, inside) = with_lanes!(simd, l => {
-                let f = fetch_words(&t, Aspect::Main, at.map(|a| I32::from_array(l, &a)), mip);
-                (by_lane(decode_fetched(l, &t, &f).map(F32::to_array)), f.inside)
+                let (mut words, at) = (NO_WORDS, at.map(|a| I32::from_array(l, &a)));
+                let inside = fetch_words(&t, Aspect::Main, at, mip, &mut words);
+                let texels = decode_fetched(l, &t, &words, inside);
+                (by_lane(texels.map(F32::to_array)), inside)
             });
             for i in 0..LANES {
                 let want = fetched(&twin, at.map(|a| a[i]), mip);
@@ -698,11 +700,12 @@ fn stencil_is_fetched_as_integers() {
         .unwrap();
     let x = core::array::from_fn(|i| i as i32 % 8);
     let y = core::array::from_fn(|i| i as i32 / 8);
-    let f = with_lanes!(SimdLevel::detect(), l => {
+    let mut words = NO_WORDS;
+    let inside = with_lanes!(SimdLevel::detect(), l => {
         let at = [I32::from_array(l, &x), I32::from_array(l, &y), I32::splat(l, 9)];
-        fetch_words(&t, Aspect::Stencil, at, 0)
+        fetch_words(&t, Aspect::Stencil, at, 0, &mut words)
     });
-    assert_eq!(f.inside, 0x0f0f);
-    assert_eq!(&f.words[0][..5], [250, 249, 248, 247, 0]);
-    assert_eq!(&f.words[0][8..12], [246, 245, 244, 243]);
+    assert_eq!(inside, 0x0f0f);
+    assert_eq!(&words[0][..5], [250, 249, 248, 247, 0]);
+    assert_eq!(&words[0][8..12], [246, 245, 244, 243]);
 }

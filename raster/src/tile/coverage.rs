@@ -13,7 +13,7 @@ use super::target::rect_mask;
 use crate::geometry::Triangle;
 use crate::shader::PACKETS;
 use crate::simd::{I32, LANES, Lanes, each3, outlined, round_to_i32};
-use crate::texture::layout::morton;
+use crate::texture::layout::{morton, morton_lanes};
 
 const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const IY: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
@@ -324,20 +324,6 @@ fn one_block<L: Lanes, S: BlockStage, const D24: bool>(
     S::run::<L, D24>(l, env, t, p, &plane, None, mask);
 }
 
-/// Indices of blocks (bx, by) in the tile's slices: Morton order.
-#[inline(always)]
-fn slots<L: Lanes>(bx: I32<L>, by: I32<L>) -> [i32; LANES] {
-    (spread(bx) | (spread(by) << 1)).to_array()
-}
-
-/// Moves bits 0 to 3 to bits 0, 2, 4 and 6.
-#[inline(always)]
-fn spread<L: Lanes>(v: I32<L>) -> I32<L> {
-    let l = v.l;
-    let v = (v | (v << 2)) & I32::splat(l, 0x33);
-    (v | (v << 1)) & I32::splat(l, 0x55)
-}
-
 /// The covered pixels of the blocks of one group.
 struct GroupMasks<'a, L: Lanes> {
     lanes: &'a EdgeLanes<L>,
@@ -402,7 +388,7 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
     let unclipped = unclipped.bits();
     let full = alive & filled & unclipped;
 
-    let slots = slots(bx, by);
+    let slots = morton_lanes(bx, by).to_array();
     let depth = env.config.needs_depth.then(
         #[inline(always)]
         || GroupDepth::<L, D24>::new(l, t, env.target, [gx, gy], env.config.depth_range),

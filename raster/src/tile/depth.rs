@@ -195,8 +195,8 @@ impl<const D24: bool> DepthBlock<D24> {
             let z = ix * I32::splat(l, self.slope[0]) + iy * I32::splat(l, self.slope[1]);
             (z + I32::splat(l, self.base + D24_HALF)) >> D24_FRACTION
         } else {
-            let [base, sx, sy] =
-                [self.base, self.slope[0], self.slope[1]].map(|b| f32::from_bits(b as u32));
+            let f = |b: i32| f32::from_bits(b as u32);
+            let [base, sx, sy] = [f(self.base), f(self.slope[0]), f(self.slope[1])];
             let z = (F32::splat(l, base) + ix.to_f32() * sx) + iy.to_f32() * sy;
             z.to_bits().to_i32()
         }
@@ -337,8 +337,11 @@ impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
             z.max(I32::splat(l, self.range[0]))
                 .min(I32::splat(l, self.range[1]))
         } else {
-            let [sx, sy, lo, hi] = [self.slope[0], self.slope[1], self.range[0], self.range[1]]
-                .map(|b| f32::from_bits(b as u32));
+            let f = |b: i32| f32::from_bits(b as u32);
+            let ([sx, sy], [lo, hi]) = (
+                [f(self.slope[0]), f(self.slope[1])],
+                [f(self.range[0]), f(self.range[1])],
+            );
             let z = (self.base.to_u32().to_f32_bits() + sx * ix as f32) + sy * iy as f32;
             z.clamp(lo, hi).to_bits().to_i32()
         }

@@ -415,7 +415,11 @@ impl<L: Lanes> Writer<'_, L> {
             .to_i32()
             .max(I32::splat(l, -32768))
             .min(I32::splat(l, 32767));
-        let d = I32::from_array(l, &words.map(|w| i32::from(w as i16)));
+        let mut old = [0; LANES];
+        for k in 0..LANES {
+            old[k] = i32::from(words[k] as i16);
+        }
+        let d = I32::from_array(l, &old);
         let new = match self.target.blend {
             None => s,
             Some(b) => self.blend_sint16(&b.color, s, d, live),
@@ -483,7 +487,10 @@ impl<L: Lanes> Writer<'_, L> {
         let d_alpha = if n == 4 { d[3] } else { F32::splat(l, 1.0) };
         let lanes = Mask::from_bits(l, live);
         let mut same = lanes;
-        for c in (0..n).filter(|&c| self.target.mask.contains(c)) {
+        for c in 0..n {
+            if !self.target.mask.contains(c) {
+                continue;
+            }
             let v = match self.target.blend {
                 None => src[c],
                 Some(b) => blend_float(
@@ -618,36 +625,40 @@ fn float_factor<L: Lanes>(
 
 #[inline(always)]
 fn load_channel(tile: &ColorTile<'_>, block: usize, k: usize, c: usize, out: &mut [u32; LANES]) {
-    let at = 16 * k..16 * k + 16;
     match tile {
-        ColorTile::B16(b) => out
-            .iter_mut()
-            .zip(&b[block].0[at])
-            .for_each(|(o, v)| *o = u32::from(*v)),
-        ColorTile::B32(b) => out.copy_from_slice(&b[block].0[at]),
-        ColorTile::B16x4(b) => out
-            .iter_mut()
-            .zip(&b[block].0[c][at])
-            .for_each(|(o, v)| *o = u32::from(*v)),
-        ColorTile::B32x4(b) => out.copy_from_slice(&b[block].0[c][at]),
+        ColorTile::B16(b) => widen(&b[block].0, k, out),
+        ColorTile::B32(b) => out.copy_from_slice(&b[block].0[16 * k..16 * k + 16]),
+        ColorTile::B16x4(b) => widen(&b[block].0[c], k, out),
+        ColorTile::B32x4(b) => out.copy_from_slice(&b[block].0[c][16 * k..16 * k + 16]),
         ColorTile::B8(_) => unreachable!("no float format has one byte"),
     }
 }
 
 #[inline(always)]
 fn store_channel(tile: &mut ColorTile<'_>, block: usize, k: usize, c: usize, v: &[u32; LANES]) {
-    let at = 16 * k..16 * k + 16;
     match tile {
-        ColorTile::B16(b) => b[block].0[at]
-            .iter_mut()
-            .zip(v)
-            .for_each(|(o, v)| *o = *v as u16),
-        ColorTile::B32(b) => b[block].0[at].copy_from_slice(v),
-        ColorTile::B16x4(b) => b[block].0[c][at]
-            .iter_mut()
-            .zip(v)
-            .for_each(|(o, v)| *o = *v as u16),
-        ColorTile::B32x4(b) => b[block].0[c][at].copy_from_slice(v),
+        ColorTile::B16(b) => narrow(v, words(&mut b[block].0, k)),
+        ColorTile::B32(b) => b[block].0[16 * k..16 * k + 16].copy_from_slice(v),
+        ColorTile::B16x4(b) => narrow(v, words(&mut b[block].0[c], k)),
+        ColorTile::B32x4(b) => b[block].0[c][16 * k..16 * k + 16].copy_from_slice(v),
         ColorTile::B8(_) => unreachable!("no float format has one byte"),
+    }
+}
+
+// Indices rather than iterators, which are calls of their own in the code of a wide
+// level.
+
+#[inline(always)]
+fn widen(block: &[u16; 64], k: usize, out: &mut [u32; LANES]) {
+    let words: &[u16; LANES] = block[16 * k..16 * k + 16].try_into().expect("16 of 64");
+    for i in 0..LANES {
+        out[i] = u32::from(words[i]);
+    }
+}
+
+#[inline(always)]
+fn narrow(v: &[u32; LANES], words: &mut [u16; LANES]) {
+    for i in 0..LANES {
+        words[i] = v[i] as u16;
     }
 }

@@ -53,7 +53,7 @@ impl Frame {
     /// Value at the origin pixel of the block at (x, y), and gradients.
     #[inline(always)]
     fn plane(&self, q: [f32; 3], x: u32, y: u32) -> [f32; 3] {
-        let q = q.map(f64::from);
+        let q = [f64::from(q[0]), f64::from(q[1]), f64::from(q[2])];
         let (e1, e2) = (q[1] - q[0], q[2] - q[0]);
         let gx = (e1 * self.by - e2 * self.ay) / self.det;
         let gy = (e2 * self.ax - e1 * self.bx) / self.det;

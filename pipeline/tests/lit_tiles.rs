@@ -28,9 +28,9 @@ fn drawn(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
 
 /// Fragments shaded by passes of light `light` that look shadows up.
 fn looked_up(picture: &Rendered, light: usize) -> u64 {
-    let labels = ["look-up", "convolution"].map(|l| format!("{l} {light}"));
+    let label = format!("look-up {light}");
     let passes = picture.report.passes.iter();
-    let own = passes.filter(|p| labels.contains(&p.label));
+    let own = passes.filter(|p| p.label == label);
     own.map(|p| p.totals().fragment_shader_invocations).sum()
 }
 

@@ -122,7 +122,7 @@ impl LookUps {
         let frame = |threshold| {
             let set = [filter, threshold, "map-size=256", "fit=receivers"];
             let done = lab.render(&scene, TECHNIQUE, &set)?;
-            Ok::<_, ReproduceError>(counters(&done, &["convolution"]))
+            Ok::<_, ReproduceError>(counters(&done, &["look-up"]))
         };
         let [more, less] = [frame("threshold=0.02")?, frame("threshold=0.7")?];
         let fetches = |slot: usize| more.traffic.tex_fetches[slot] as f64;
@@ -146,7 +146,7 @@ fn look_ups(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let beside = |what: &str, ours| Measure::beside(what, "-", ours, Unit::Count);
     Ok(Finding {
         scene: lab.describe("cylinder"),
-        counted: "API-level fetches of the pass `convolution` for a pixel that goes all the way: \
+        counted: "API-level fetches of the pass `look-up` for a pixel that goes all the way: \
             two CSM-Z and one depth at the first width, two CSM there and two at the last width; \
             4 B an RGBA8 texel, 8 B an RGBA16, 16 B an RGBA32, 4 B of depth. A box of a table \
             is its four corners, each a filtered fetch. Positions, which the paper has from its \

@@ -93,7 +93,7 @@ impl FragmentShader for CopyLevel {
 /// tables and stay so.
 ///
 /// The mean is in the last level of the chain of the textures that are read; see
-/// [`mean_factor`].
+/// `mean_factor`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LessMean {
     /// Textures in slots from 0, attachments likewise.

@@ -18,9 +18,11 @@ use crate::tile::{ChunkRef, DrawWork, Scratch, TileTarget, run_tile};
 const CHUNK: u32 = 1024;
 /// Vertices that one worker shades at a time.
 const VERTEX_RUN: usize = 2048;
-/// Primitives of a batch for each thread; their set-ups wait in its cache until the
-/// tiles have run.
+/// Primitives of a batch on one thread; their set-ups wait in its cache until the tiles
+/// have run.
 const BATCH: u32 = 8 * CHUNK;
+/// The same for each of several, which wait for one another at the end of a batch.
+const SHARED_BATCH: u32 = 2 * BATCH;
 
 /// Executes a validated pass. Accesses go to `accesses` where it is given.
 pub(super) fn execute(
@@ -134,7 +136,12 @@ impl<'a> Executor<'a> {
         } else {
             1
         };
-        let batches = batches(&units, BATCH.saturating_mul(threads));
+        let room = if threads == 1 {
+            BATCH
+        } else {
+            SHARED_BATCH.saturating_mul(threads)
+        };
+        let batches = batches(&units, room);
         let fills = [
             split::loads(self.pass, &self.sizes),
             split::stores(self.pass),

@@ -126,13 +126,14 @@ impl Technique for ConvolutionSoftShadows {
         ];
         let mut notes = Notes::default();
         let visibility = VisibilityTexture::red(shadows.visibility);
-        let receivers = ReceiverTiles::new(scene, &shadows.around, &shadows.draws.view);
+        // Visibility of the first light is an output and needed everywhere.
+        let receivers = (shadows.settings.skip && lights.len() > 1)
+            .then(|| ReceiverTiles::new(scene, &shadows.around, &shadows.draws.view));
         for &light in lights.iter().rev() {
             let label = |what: &str| passes::label(what, light, &lights);
             let viewed = ViewedLight::new(self.name(), &scene.lights[light], light)?;
-            // Visibility of the first is an output and needed everywhere.
-            let skip = shadows.settings.skip && light != lights[0];
-            let tiles = skip.then(|| receivers.lit_by(&scene.lights[light]));
+            let further = receivers.as_ref().filter(|_| light != lights[0]);
+            let tiles = further.map(|r| r.lit_by(&scene.lights[light]));
             list.extend(shadows.light_passes(&viewed, tiles.as_ref(), &label, &mut notes));
             notes
                 .warnings

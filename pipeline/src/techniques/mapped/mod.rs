@@ -117,12 +117,13 @@ impl Mapped<'_> {
         let around = Surroundings::new(self.scene, self.size);
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut notes = Notes::default();
-        let receivers = ReceiverTiles::new(self.scene, &around, &draws.view);
+        // Visibility of the first light is an output and needed everywhere.
+        let receivers = (maps.skip && lights.len() > 1)
+            .then(|| ReceiverTiles::new(self.scene, &around, &draws.view));
         for &light in lights.iter().rev() {
             let sources = sources(light)?;
-            // Visibility of the first is an output and needed everywhere.
-            let skip = maps.skip && light != lights[0];
-            let tiles = skip.then(|| receivers.lit_by(&self.scene.lights[light]));
+            let further = receivers.as_ref().filter(|_| light != lights[0]);
+            let tiles = further.map(|r| r.lit_by(&self.scene.lights[light]));
             let one = OneLight {
                 scene: self.scene,
                 view: &draws.view,

@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use gnomon_raster::texture::ColorTexel;
-use gnomon_raster::{Gpu, GpuConfig, PassReport, SubmitReport, Subresource};
+use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource};
 use thiserror::Error;
 
 use crate::scene::Scene;
@@ -169,7 +169,11 @@ fn read_back(
     let mut warnings = scene.warnings.clone();
     warnings.extend(frame.warnings);
     warnings.extend(event_warnings(&times.report));
-    let counted = shader_counts(&times.report);
+    let counted = times.report.shader_counts().into_iter();
+    let counted = counted.map(|(name, n)| Figure {
+        name: name.to_owned(),
+        value: n as f64,
+    });
     Ok(Rendered {
         size,
         srgb: color.iter().map(|t| encoder.encode(t.0)).collect(),
@@ -217,21 +221,6 @@ fn adds_up_coverage(label: &str) -> bool {
     ["quads", "wedges"]
         .iter()
         .any(|what| label.starts_with(what))
-}
-
-/// What shaders counted themselves, over all passes.
-fn shader_counts(report: &SubmitReport) -> Vec<Figure> {
-    let mut all: Vec<Figure> = Vec::new();
-    for (name, n) in report.passes.iter().flat_map(PassReport::shader_counts) {
-        match all.iter_mut().find(|f| f.name == name) {
-            Some(figure) => figure.value += n as f64,
-            None => all.push(Figure {
-                name: name.to_owned(),
-                value: n as f64,
-            }),
-        }
-    }
-    all
 }
 
 /// Events that changed the picture without stopping it.

@@ -90,17 +90,21 @@ impl PassReport {
     /// appearance.
     #[must_use]
     pub fn shader_counts(&self) -> Vec<(&'static str, u64)> {
-        let mut all: Vec<(&'static str, u64)> = Vec::new();
-        for d in &self.draws {
-            for (&name, n) in d.counted.iter().zip(d.counters.shader_counts) {
-                match all.iter_mut().find(|(known, _)| *known == name) {
-                    Some((_, sum)) => *sum += n,
-                    None => all.push((name, n)),
-                }
-            }
-        }
-        all
+        let of = |d: &DrawReport| d.counted.iter().copied().zip(d.counters.shader_counts);
+        sums_by_name(self.draws.iter().flat_map(of))
     }
+}
+
+/// Sums of what has one name, in the order of first appearance.
+fn sums_by_name(counts: impl Iterator<Item = (&'static str, u64)>) -> Vec<(&'static str, u64)> {
+    let mut all: Vec<(&'static str, u64)> = Vec::new();
+    for (name, n) in counts {
+        match all.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, sum)) => *sum += n,
+            None => all.push((name, n)),
+        }
+    }
+    all
 }
 
 /// What a command list counted.
@@ -108,6 +112,14 @@ impl PassReport {
 pub struct SubmitReport {
     /// Its passes in order.
     pub passes: Vec<PassReport>,
+}
+
+impl SubmitReport {
+    /// What fragment shaders counted themselves, over all passes.
+    #[must_use]
+    pub fn shader_counts(&self) -> Vec<(&'static str, u64)> {
+        sums_by_name(self.passes.iter().flat_map(PassReport::shader_counts))
+    }
 }
 
 impl Gpu {

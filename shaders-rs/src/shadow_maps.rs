@@ -115,19 +115,30 @@ impl<F: ShadowFilter> FragmentShader for Shadow<F> {
     }
 }
 
+/// Whether the texel at (column, row) blocks, and its stored depth.
+#[inline(always)]
+fn blocker<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    receiver: &Receiver<L>,
+    [column, row]: [I32<L>; 2],
+) -> (Mask<L>, F32<L>) {
+    let depth = texel_of(l, f, DEPTHS, [column, row, I32::splat(l, 0)]);
+    // Alpha is 1 inside the picture and 0 outside.
+    let inside = depth[3].gt(F32::splat(l, 0.0));
+    (inside & depth[0].lt(receiver.reference), depth[0])
+}
+
 /// 1 where the texel at (column, row) blocks, else 0.
 #[inline(always)]
 fn blocks<L: Lanes>(
     l: L,
     f: &mut Fragment<'_, L>,
     receiver: &Receiver<L>,
-    [column, row]: [I32<L>; 2],
+    at: [I32<L>; 2],
 ) -> F32<L> {
-    let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
-    let depth = texel_of(l, f, DEPTHS, [column, row, I32::splat(l, 0)]);
-    // Alpha is 1 inside the picture and 0 outside.
-    let blocked = depth[3].gt(zero) & depth[0].lt(receiver.reference);
-    blocked.select_f32(one, zero)
+    let (blocked, _) = blocker(l, f, receiver, at);
+    blocked.select_f32(F32::splat(l, 1.0), F32::splat(l, 0.0))
 }
 
 /// The mean over `taps` x `taps` texels, those nearest to the receiver; one is the
@@ -241,10 +252,9 @@ impl ShadowFilter for SampledKernel {
         let (mut count, mut sum) = (zero, zero);
         for place in self.search.iter() {
             let at = sample_at(receiver, half, *place);
-            let depth = texel_of(l, f, DEPTHS, [at[0], at[1], I32::splat(l, 0)]);
-            let blocked = depth[3].gt(zero) & depth[0].lt(receiver.reference);
+            let (blocked, depth) = blocker(l, f, receiver, at);
             count = count + blocked.select_f32(one, zero);
-            sum = sum + blocked.select_f32(depth[0], zero);
+            sum = sum + blocked.select_f32(depth, zero);
         }
         let some = count.gt(zero);
         f.discard(!some);
@@ -350,11 +360,10 @@ fn blockers<L: Lanes>(
             // Lanes that are done read nothing.
             let outside = F32::splat(l, -1.0);
             let at = [read.select_f32(x, outside).to_i32(), y.to_i32()];
-            let depth = texel_of(l, f, DEPTHS, [at[0], at[1], I32::splat(l, 0)]);
-            let blocked = read & depth[3].gt(zero) & depth[0].lt(receiver.reference);
-            let weight = blocked.select_f32(weight, zero);
+            let (blocked, depth) = blocker(l, f, receiver, at);
+            let weight = (read & blocked).select_f32(weight, zero);
             area = area + weight;
-            sum = sum + weight * depth[0];
+            sum = sum + weight * depth;
         }
     }
     [area, sum]

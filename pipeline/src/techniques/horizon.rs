@@ -32,6 +32,8 @@ pub(crate) const HORIZON: ParamInfo = ParamInfo {
 
 /// A light of which facets see what is before their plane.
 pub(super) enum Horizon {
+    /// Nobody asked.
+    Off,
     /// A share of it.
     Area(AreaLight),
     /// All or nothing.
@@ -39,7 +41,7 @@ pub(super) enum Horizon {
 }
 
 impl Horizon {
-    /// For light number `number`, if `params` ask for it.
+    /// Of light number `number`, as `params` ask.
     ///
     /// # Errors
     /// The light is a sphere, whose share before a plane differs over a facet, or has an
@@ -50,9 +52,9 @@ impl Horizon {
         light: &Light,
         has_image: bool,
         params: &Params,
-    ) -> Result<Option<Self>, TechniqueError> {
+    ) -> Result<Self, TechniqueError> {
         if params.get(HORIZON.name) != "on" {
-            return Ok(None);
+            return Ok(Self::Off);
         }
         let refused = |why: String| TechniqueError::UnsuitableLight {
             technique,
@@ -65,19 +67,19 @@ impl Horizon {
                 "it is a sphere, and horizon=on was asked for".into(),
             )),
             LightShape::Point { .. } | LightShape::Directional { .. } => {
-                Ok(Some(Self::Hard(light.hard())))
+                Ok(Self::Hard(light.hard()))
             }
             _ if has_image => Err(refused(
                 "it has an image, and horizon=on was asked for".into(),
             )),
             _ => {
                 let area = AreaLight::new(&light.shape).map_err(|e| refused(e.to_string()))?;
-                Ok(Some(Self::Area(area)))
+                Ok(Self::Area(area))
             }
         }
     }
 
-    /// Limits `visibility` of the light; `None` where no facet needs it.
+    /// Limits `visibility` of the light; `None` where nobody asked or no facet needs it.
     pub(super) fn pass(
         &self,
         label: String,
@@ -85,6 +87,9 @@ impl Horizon {
         targets: &Targets,
         visibility: VisibilityTexture,
     ) -> Option<RenderPass> {
+        if matches!(self, Self::Off) {
+            return None;
+        }
         let view = &draws.view;
         let share = |corners: [DVec3; 3]| {
             let [a, b, c] = corners;
@@ -115,6 +120,7 @@ impl Horizon {
     fn before(&self, point: DVec3, normal: DVec3) -> Option<f64> {
         let height = |p: DVec3| normal.dot(p - point);
         let share = match self {
+            Self::Off => 1.0,
             Self::Hard(light) if normal.dot(light.towards_from(point)) > 0.0 => 1.0,
             Self::Hard(_) => 0.0,
             Self::Area(AreaLight::Polygon { corners, .. }) => polygon_before(corners, height),

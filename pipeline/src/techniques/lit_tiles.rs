@@ -41,8 +41,40 @@ struct Facet {
     high: [u32; 2],
 }
 
+/// The lights of a frame whose look-ups may be left out in tiles: all but the first,
+/// whose visibility is an output and needed everywhere.
+pub(super) struct FurtherLights<'a> {
+    scene: &'a Scene,
+    first: usize,
+    /// Found only where there are such lights.
+    receivers: Option<ReceiverTiles>,
+}
+
+impl<'a> FurtherLights<'a> {
+    /// Of `lights`, if anything is to be skipped.
+    pub(super) fn new(
+        scene: &'a Scene,
+        around: &Surroundings<'_>,
+        view: &View,
+        lights: &[usize],
+        skip: bool,
+    ) -> Self {
+        Self {
+            scene,
+            first: lights.first().copied().unwrap_or(0),
+            receivers: (skip && lights.len() > 1).then(|| ReceiverTiles::new(scene, around, view)),
+        }
+    }
+
+    /// The tiles in which a light may add something; `None` for all of the screen.
+    pub(super) fn tiles(&self, light: usize) -> Option<LitTiles> {
+        let receivers = self.receivers.as_ref().filter(|_| light != self.first)?;
+        Some(receivers.lit_by(&self.scene.lights[light]))
+    }
+}
+
 /// All receivers of a frame.
-pub(super) struct ReceiverTiles {
+struct ReceiverTiles {
     facets: Vec<Facet>,
     size: [u32; 2],
     /// Largest coordinate relative to the view's origin.
@@ -51,7 +83,7 @@ pub(super) struct ReceiverTiles {
 }
 
 impl ReceiverTiles {
-    pub(super) fn new(scene: &Scene, around: &Surroundings<'_>, view: &View) -> Self {
+    fn new(scene: &Scene, around: &Surroundings<'_>, view: &View) -> Self {
         let size = view.size();
         let mut facets = Vec::new();
         let mut magnitude = 0.0f64;
@@ -81,7 +113,7 @@ impl ReceiverTiles {
     }
 
     /// The tiles in which `light` may add something.
-    pub(super) fn lit_by(&self, light: &Light) -> LitTiles {
+    fn lit_by(&self, light: &Light) -> LitTiles {
         let mut tiles = LitTiles::none(self.size);
         if light.colour == [0.0; 3] {
             return tiles;

@@ -46,7 +46,7 @@ use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
 use super::horizon::{HORIZON, Horizon};
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
-use super::lit_tiles::{LitTiles, ReceiverTiles};
+use super::lit_tiles::{FurtherLights, LitTiles};
 use super::mapped::{self, Notes, Said};
 use super::passes::{self, LitTest, SceneDraws, Targets};
 use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
@@ -126,21 +126,18 @@ impl Technique for ConvolutionSoftShadows {
         ];
         let mut notes = Notes::default();
         let visibility = VisibilityTexture::red(shadows.visibility);
-        // Visibility of the first light is an output and needed everywhere.
-        let receivers = (shadows.settings.skip && lights.len() > 1)
-            .then(|| ReceiverTiles::new(scene, &shadows.around, &shadows.draws.view));
+        let (around, view) = (&shadows.around, &shadows.draws.view);
+        let further = FurtherLights::new(scene, around, view, &lights, shadows.settings.skip);
         for &light in lights.iter().rev() {
             let label = |what: &str| passes::label(what, light, &lights);
             let viewed = ViewedLight::new(self.name(), &scene.lights[light], light)?;
-            let further = receivers.as_ref().filter(|_| light != lights[0]);
-            let tiles = further.map(|r| r.lit_by(&scene.lights[light]));
+            let tiles = further.tiles(light);
             list.extend(shadows.light_passes(&viewed, tiles.as_ref(), &label, &mut notes));
             notes
                 .warnings
                 .extend(square_instead(&scene.lights[light], light));
             let horizon = Horizon::wanted(self.name(), light, &scene.lights[light], false, params)?;
-            let limit = |h: Horizon| h.pass(label("horizon"), &shadows.draws, targets, visibility);
-            list.extend(horizon.and_then(limit));
+            list.extend(horizon.pass(label("horizon"), &shadows.draws, targets, visibility));
             let test = LitTest::Visibility(visibility);
             list.push(shadows.draws.lit_pass(targets, light, &label("lit"), test));
         }

@@ -22,7 +22,7 @@ pub(super) use params::{
 
 use super::horizon::Horizon;
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
-use super::lit_tiles::{LitTiles, ReceiverTiles};
+use super::lit_tiles::{FurtherLights, LitTiles};
 use super::passes::{self, LitTest, SceneDraws, Targets, View};
 use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
 use crate::scene::Scene;
@@ -117,13 +117,10 @@ impl Mapped<'_> {
         let around = Surroundings::new(self.scene, self.size);
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut notes = Notes::default();
-        // Visibility of the first light is an output and needed everywhere.
-        let receivers = (maps.skip && lights.len() > 1)
-            .then(|| ReceiverTiles::new(self.scene, &around, &draws.view));
+        let further = FurtherLights::new(self.scene, &around, &draws.view, &lights, maps.skip);
         for &light in lights.iter().rev() {
             let sources = sources(light)?;
-            let further = receivers.as_ref().filter(|_| light != lights[0]);
-            let tiles = further.map(|r| r.lit_by(&self.scene.lights[light]));
+            let tiles = further.tiles(light);
             let one = OneLight {
                 scene: self.scene,
                 view: &draws.view,
@@ -140,8 +137,7 @@ impl Mapped<'_> {
             let label = |what: &str| passes::label(what, light, &lights);
             let shone = &self.scene.lights[light];
             let horizon = Horizon::wanted(self.name, light, shone, false, self.params)?;
-            let limit = |h: Horizon| h.pass(label("horizon"), &draws, &targets, visibility);
-            list.extend(horizon.and_then(limit));
+            list.extend(horizon.pass(label("horizon"), &draws, &targets, visibility));
             let test = LitTest::Visibility(visibility);
             list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }

@@ -135,9 +135,7 @@ impl Technique for SoftShadowVolumes {
             list.extend(buffers.resolve_pass(label("resolve")));
             let image = light_image(params);
             let horizon = Horizon::wanted(self.name(), light, shape, image.is_some(), params)?;
-            let limit =
-                |h: Horizon| h.pass(label("horizon"), &draws, &targets, buffers.visibility());
-            list.extend(horizon.and_then(limit));
+            list.extend(horizon.pass(label("horizon"), &draws, &targets, buffers.visibility()));
             let test = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }

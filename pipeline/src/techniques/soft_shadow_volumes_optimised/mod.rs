@@ -171,9 +171,7 @@ impl Technique for SoftShadowVolumesOptimised {
             warnings.extend(warnings_of(&label("wedges"), &met.wedges, &met.areas));
             let light = &scene.lights[number];
             let horizon = Horizon::wanted(self.name(), number, light, false, params)?;
-            let limit =
-                |h: Horizon| h.pass(label("horizon"), &draws, &targets, buffers.visibility());
-            list.extend(horizon.and_then(limit));
+            list.extend(horizon.pass(label("horizon"), &draws, &targets, buffers.visibility()));
             let visibility = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, number, &label("lit"), visibility));
         }

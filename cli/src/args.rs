@@ -5,7 +5,7 @@ mod environment;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use gnomon_pipeline::comparison::{ReferenceKind, UnknownReference};
+use gnomon_pipeline::measure::comparison::{ReferenceKind, UnknownReference};
 use gnomon_raster::{GpuConfig, MAX_TEXTURE_SIZE, MAX_THREADS, SimdLevel};
 
 pub(crate) use environment::EnvArgs;

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use gnomon_pipeline::comparison::CompareError;
-use gnomon_pipeline::metrics::MetricError;
-use gnomon_pipeline::render::RenderError;
-use gnomon_pipeline::reproduce::{ReproduceError, UnknownClaim};
-use gnomon_pipeline::scene::SceneError;
+use gnomon_claims::{ReproduceError, UnknownClaim};
+use gnomon_pipeline::measure::comparison::CompareError;
+use gnomon_pipeline::measure::render::RenderError;
 use gnomon_pipeline::technique::TechniqueError;
+use gnomon_pipeline::truth::metrics::MetricError;
+use gnomon_pipeline::world::scene::SceneError;
 use thiserror::Error;
 
 /// Why a verb did not finish.

@@ -17,11 +17,12 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use glam::DVec3;
-use gnomon_pipeline::comparison::{Reference, ReferenceKind};
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::render::{RenderSettings, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::technique::{Params, Technique, techniques};
+use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
+use gnomon_pipeline::measure::render::{RenderSettings, render};
+use gnomon_pipeline::technique::{Params, Technique};
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::world::scene::{Scene, builtin};
 use plot::{Axis, Plot, Series};
 
 const SIZE: [u32; 2] = [240, 160];
@@ -86,7 +87,7 @@ fn curve(
 
 /// The share of pixels that truth and pictures have in common, at worst, and RMSE.
 fn errors(scene: &Scene, scale: f64, offset: DVec3) -> (f64, Vec<Option<f64>>) {
-    let none = || (0.0, vec![None; techniques().len()]);
+    let none = || (0.0, vec![None; techniques::all().len()]);
     let Ok(placed) = scene.placed(scale, offset) else {
         return none();
     };
@@ -112,12 +113,12 @@ fn errors(scene: &Scene, scale: f64, offset: DVec3) -> (f64, Vec<Option<f64>>) {
         least = least.min(all.pixels as f64 / surfaces as f64);
         Some(all.rmse)
     };
-    let errors = techniques().iter().map(|t| of(*t)).collect();
+    let errors = techniques::all().iter().map(|t| of(*t)).collect();
     (least, errors)
 }
 
 fn csv(curves: &[Curve]) -> String {
-    let names: Vec<_> = techniques().iter().map(|t| t.name()).collect();
+    let names: Vec<_> = techniques::all().iter().map(|t| t.name()).collect();
     let mut text = format!("variable,value,pixels compared,{}\n", names.join(","));
     for curve in curves {
         for (value, share, errors) in &curve.points {
@@ -136,13 +137,13 @@ fn csv(curves: &[Curve]) -> String {
 
 fn plot_of(curve: &Curve) -> Plot {
     let series = |k: usize| Series {
-        name: techniques()[k].name().to_owned(),
+        name: techniques::all()[k].name().to_owned(),
         points: curve.points.iter().map(|p| (p.0, p.2[k])).collect(),
     };
     Plot {
         title: format!("RMSE of visibility over {}", curve.variable),
         axis: Axis::Decades,
         floor: FLOOR,
-        series: (0..techniques().len()).map(series).collect(),
+        series: (0..techniques::all().len()).map(series).collect(),
     }
 }

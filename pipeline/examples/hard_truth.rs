@@ -7,8 +7,8 @@
 
 use std::error::Error;
 
-use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth, PixelTruth};
-use gnomon_pipeline::scene::{self, Scene};
+use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth, PixelTruth};
+use gnomon_pipeline::world::scene::{self, Scene};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -11,10 +11,11 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use gnomon_pipeline::adjacency::EdgeAdjacency;
-use gnomon_pipeline::scene::{Material, Scene, builtin};
-use gnomon_pipeline::technique::{self, Params};
-use gnomon_pipeline::volume::ShadowVolume;
+use gnomon_pipeline::geometry::volume::ShadowVolume;
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::world::adjacency::EdgeAdjacency;
+use gnomon_pipeline::world::scene::{Material, Scene, builtin};
 use gnomon_raster::{CommandList, Gpu, GpuConfig, SubmitReport, Subresource};
 use sha2::{Digest, Sha256};
 
@@ -95,7 +96,7 @@ fn measure_scene(
     size: u32,
     threads: usize,
 ) -> Result<String, Box<dyn Error>> {
-    let technique = technique::find("shadow-volumes")?;
+    let technique = techniques::find("shadow-volumes")?;
     let params = Params::parse(
         technique,
         [

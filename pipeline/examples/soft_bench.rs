@@ -17,12 +17,13 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use gnomon_pipeline::comparison::{Reference, ReferenceKind};
-use gnomon_pipeline::metrics::visibility::{ErrorSummary, VisibilityError};
-use gnomon_pipeline::oracle::area::LightRegion;
-use gnomon_pipeline::render::{RenderSettings, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::technique::{self, Params, Technique};
+use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
+use gnomon_pipeline::measure::render::{RenderSettings, render};
+use gnomon_pipeline::technique::{Params, Technique};
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::truth::metrics::visibility::{ErrorSummary, VisibilityError};
+use gnomon_pipeline::truth::oracle::area::LightRegion;
+use gnomon_pipeline::world::scene::{Scene, builtin};
 use gnomon_raster::{Gpu, GpuConfig, SubmitReport};
 
 struct Options {
@@ -55,7 +56,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
         config: GpuConfig::default(),
         scenes: "abc".into(),
         size: 512,
-        technique: technique::find("soft-shadow-volumes")?,
+        technique: techniques::find("soft-shadow-volumes")?,
         set: Vec::new(),
         budget: Duration::from_secs(3),
         json: None,
@@ -71,7 +72,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
             "--threads" => o.config.threads = value.parse()?,
             "--scenes" => o.scenes = value.to_lowercase(),
             "--size" => o.size = value.parse()?,
-            "--technique" => o.technique = technique::find(value)?,
+            "--technique" => o.technique = techniques::find(value)?,
             "--set" => o.set = value.split(',').map(str::to_owned).collect(),
             "--budget" => o.budget = Duration::from_secs_f64(value.parse()?),
             "--json" => o.json = Some(value.clone()),

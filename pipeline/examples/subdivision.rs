@@ -16,12 +16,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
-use gnomon_pipeline::light::LightShape;
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::render::{RenderSettings, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::shape::bevelled_plate_in_pieces;
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::render::{RenderSettings, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::world::light::LightShape;
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::scene::{Scene, builtin};
+use gnomon_pipeline::world::shape::bevelled_plate_in_pieces;
 use plot::{Axis, Plot, Series};
 
 const SIZE: [u32; 2] = [240, 160];

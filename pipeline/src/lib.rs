@@ -13,8 +13,8 @@
 //! pinned `libm` crate.
 //!
 //! ```
-//! use gnomon_pipeline::{adjacency::EdgeAdjacency, light::HardLight};
-//! use gnomon_pipeline::{scene::builtin, volume::ShadowVolume};
+//! use gnomon_pipeline::world::adjacency::EdgeAdjacency;
+//! use gnomon_pipeline::{geometry::volume::ShadowVolume, world::scene::builtin};
 //!
 //! let scene = builtin::build("peer-a")?;
 //! let cylinder = &scene.casters().next().unwrap().mesh;
@@ -25,18 +25,19 @@
 //! let volume = ShadowVolume::of_closed(cylinder, &adjacency, light);
 //! assert_eq!(volume.light_cap().len() + volume.dark_cap().len(), 256);
 //! assert_eq!(volume.sides().len(), 2 * 66); // two triangles per silhouette edge
-//! # Ok::<(), gnomon_pipeline::error::UnknownScene>(())
+//! # Ok::<(), gnomon_pipeline::world::error::UnknownScene>(())
 //! ```
 //!
 //! A [`technique`] turns a scene into commands for the emulated GPU, and
 //! [`render`] runs them:
 //!
 //! ```
-//! use gnomon_pipeline::render::{self, RenderSettings};
-//! use gnomon_pipeline::{scene::builtin, technique};
+//! use gnomon_pipeline::measure::render::{self, RenderSettings};
+//! use gnomon_pipeline::world::scene::builtin;
+//! use gnomon_pipeline::{technique, techniques};
 //!
 //! let scene = builtin::build("cylinder")?;
-//! let shadows = technique::find("shadow-volumes")?;
+//! let shadows = techniques::find("shadow-volumes")?;
 //! let params = technique::Params::parse(shadows, ["method=zfail"])?;
 //! let settings = RenderSettings { size: [64, 48], ..RenderSettings::default() };
 //! let picture = render::render(&scene, shadows, &params, &settings)?;
@@ -45,34 +46,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod adjacency;
-pub mod area_light;
-pub mod caster;
-pub mod chart;
-pub mod comparison;
-pub mod convolution;
-pub mod coverage;
-pub mod environment;
-pub mod error;
-pub mod heat;
-pub mod light;
-pub mod light_samples;
-pub mod mesh;
-pub mod metrics;
-pub mod obj;
-pub mod oracle;
-pub mod render;
-pub mod reproduce;
-pub mod scene;
-pub mod shape;
-pub mod silhouette;
-pub mod silhouette_loops;
+pub mod geometry;
+pub mod measure;
+pub mod parts;
 pub mod technique;
-mod techniques;
-pub mod tile_traffic;
-pub mod volume;
-pub mod wedge;
-pub mod wedge_work;
-pub mod winding;
-
-pub use techniques::scene_wedges;
+pub mod techniques;
+pub mod truth;
+pub mod world;

@@ -1,14 +1,15 @@
 //! Techniques against the truth, end to end, where the errors are known beforehand.
 
 use glam::DVec3;
-use gnomon_pipeline::comparison::{Reference, ReferenceKind, Score, shaded};
-use gnomon_pipeline::light::{ConvexPolygon, LightShape};
-use gnomon_pipeline::metrics::visibility::ErrorSummary;
-use gnomon_pipeline::oracle::area::LightRegion;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::Scene;
-use gnomon_pipeline::scene::builtin::{self, PLATES};
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind, Score, shaded};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
+use gnomon_pipeline::truth::oracle::area::LightRegion;
+use gnomon_pipeline::world::light::{ConvexPolygon, LightShape};
+use gnomon_pipeline::world::scene::Scene;
+use gnomon_pipeline::world::scene::builtin::{self, PLATES};
 
 const SIZE: [u32; 2] = [160, 120];
 
@@ -116,7 +117,7 @@ fn a_hard_mask_has_the_rmse_of_the_closed_form() {
 
 /// A grid of k by k points sees an edge along its rows in steps of 1/k, so it is
 /// off by up to 1/2k, evenly spread, at one edge and up to 1/k at two
-/// (IMPLEMENTING §0.6). Turned, its steps are k times finer.
+/// (docs/papers.md, baselines). Turned, its steps are k times finer.
 #[test]
 fn sampled_errors_fall_with_the_side_of_the_grid() {
     let bench = Bench::plates();

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use gnomon_pipeline::convolution::{Series, Suppression};
+use gnomon_pipeline::geometry::convolution::{Series, Suppression};
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{

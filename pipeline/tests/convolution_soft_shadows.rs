@@ -2,16 +2,17 @@
 //! themselves where nothing may change a bit.
 
 use glam::DVec3;
-use gnomon_pipeline::light::{HardLight, Light, LightShape};
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::area::{LightRegion, VisibilityImage};
-use gnomon_pipeline::oracle::hard::HardOracle;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::builtin::PLATES;
-use gnomon_pipeline::scene::{Material, Object, Scene, builtin};
-use gnomon_pipeline::shape;
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
+use gnomon_pipeline::truth::oracle::hard::HardOracle;
+use gnomon_pipeline::world::light::{HardLight, Light, LightShape};
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::scene::builtin::PLATES;
+use gnomon_pipeline::world::scene::{Material, Object, Scene, builtin};
+use gnomon_pipeline::world::shape;
 use gnomon_raster::{Counters, GpuConfig, SimdLevel};
 use gnomon_shaders::convolution::visibility::BELOW_THRESHOLD;
 

@@ -222,7 +222,7 @@ fn texel_error(side: u32, mean: f32) -> f64 {
     worst
 }
 
-/// IMPLEMENTING §1.7: half a unit in the last place of the largest entry, 0.008 at
+/// docs/papers.md, Annen et al. 2008: half a unit in the last place of the largest entry, 0.008 at
 /// 512², 0.032 at 1024²; four entries make a texel, so up to some times that. A table
 /// of what is left after the mean loses a thousandth.
 #[test]

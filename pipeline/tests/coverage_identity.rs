@@ -5,7 +5,7 @@
 mod wedge_support;
 
 use glam::{DVec2, DVec3};
-use gnomon_pipeline::coverage::{LightPlane, SphereOutline, loop_visibility, umbra_side};
+use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline, loop_visibility, umbra_side};
 use wedge_support::{Frame, KINDS, Kind, Random, shape};
 
 /// A simple loop in light coordinates (units of the light's half size), clockwise:

@@ -4,12 +4,12 @@
 
 use std::path::PathBuf;
 
-use gnomon_pipeline::adjacency::EdgeAdjacency;
-use gnomon_pipeline::caster::Caster;
-use gnomon_pipeline::light::HardLight;
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::obj;
-use gnomon_pipeline::winding::volume_solid_angle;
+use gnomon_pipeline::geometry::caster::Caster;
+use gnomon_pipeline::geometry::winding::volume_solid_angle;
+use gnomon_pipeline::world::adjacency::EdgeAdjacency;
+use gnomon_pipeline::world::light::HardLight;
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::obj;
 
 /// `$GNOMON_DATA`, or `shared/data` beside the workspace.
 fn data_folder() -> Option<PathBuf> {

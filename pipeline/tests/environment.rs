@@ -1,17 +1,17 @@
 //! Scenes lit by environments: every technique draws them, the same bits however
 //! they are executed, nearer to the reference the more lights there are.
 
-use gnomon_pipeline::comparison::{
+use gnomon_pipeline::measure::comparison::{
     Directions, EnvironmentReference, RadianceScore, Reference, ReferenceKind,
 };
-use gnomon_pipeline::environment::{
-    Environment, EnvironmentRequest, FitSettings, MapSettings, ResidualRule,
-};
-use gnomon_pipeline::light::HardLight;
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, SceneSource};
-use gnomon_pipeline::technique::{Params, TextureSource, find, techniques};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::{Params, TextureSource};
+use gnomon_pipeline::techniques::{self, find};
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::world::environment::{Environment, FitSettings, MapSettings, ResidualRule};
+use gnomon_pipeline::world::light::HardLight;
+use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
+use gnomon_pipeline::world::scene::{Scene, SceneSource};
 use gnomon_raster::{Gpu, GpuConfig, SimdLevel, Subresource, TextureDescriptor, TextureId};
 
 /// A scene under the procedural sky.
@@ -61,7 +61,7 @@ fn reference(scene: &Scene, count: usize, seed: u64) -> EnvironmentReference {
 fn every_technique_draws_a_scene_under_an_environment() {
     let scene = under_sky("creature", lights(12));
     let bare = drawn(&scene, "unshadowed", &[], GpuConfig::default());
-    for technique in techniques() {
+    for technique in techniques::all() {
         let name = technique.name();
         let few = technique.params().iter().any(|p| p.name == "samples");
         let few = if few { &["samples=4"][..] } else { &[] };

@@ -3,8 +3,8 @@
 
 use std::time::Instant;
 
-use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth};
-use gnomon_pipeline::scene::builtin;
+use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth};
+use gnomon_pipeline::world::scene::builtin;
 
 #[test]
 #[ignore = "a measurement, not a check; run in release"]

@@ -1,12 +1,13 @@
 //! Visibility limited to the light before a facet's plane, against the oracle.
 
-use gnomon_pipeline::comparison::{Reference, ReferenceKind};
-use gnomon_pipeline::light::{Light, LightShape};
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::area::LightRegion;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::area::LightRegion;
+use gnomon_pipeline::world::light::{Light, LightShape};
+use gnomon_pipeline::world::scene::{Scene, builtin};
 
 const SIZE: [u32; 2] = [120, 80];
 const BOTH: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
@@ -84,7 +85,7 @@ fn facets_turned_away_are_dark_in_shadow_maps() {
     // A point sees all of a facet or nothing.
     let mut scene = builtin::build("peer-a").unwrap();
     let position = scene.lights[0].hard();
-    let gnomon_pipeline::light::HardLight::Point(position) = position else {
+    let gnomon_pipeline::world::light::HardLight::Point(position) = position else {
         unreachable!()
     };
     scene.lights[0].shape = LightShape::Point { position };

@@ -2,11 +2,13 @@
 //! the same bits, less work.
 
 use glam::DVec3;
-use gnomon_pipeline::environment::{EnvironmentRequest, FitSettings};
-use gnomon_pipeline::light::{HardLight, Light, LightShape};
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, SceneSource, builtin};
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::world::environment::FitSettings;
+use gnomon_pipeline::world::light::{HardLight, Light, LightShape};
+use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
+use gnomon_pipeline::world::scene::{Scene, SceneSource, builtin};
 
 const TECHNIQUES: [(&str, &[&str]); 5] = [
     ("shadow-map", &[]),

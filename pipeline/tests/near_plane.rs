@@ -8,9 +8,10 @@
 
 use std::sync::Arc;
 
-use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::technique::{self, Params};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth};
+use gnomon_pipeline::world::scene::{Scene, builtin};
 use gnomon_raster::state::PrimitiveState;
 use gnomon_raster::{CommandList, Gpu, GpuConfig, RenderPipeline, Subresource};
 
@@ -31,7 +32,7 @@ fn set_clamp(list: &mut CommandList, depth_clamp: bool) {
 }
 
 fn stencil(scene: &Scene, method: &str, depth_clamp: bool) -> Vec<u8> {
-    let technique = technique::find("shadow-volumes").unwrap();
+    let technique = techniques::find("shadow-volumes").unwrap();
     let params = Params::parse(technique, [method, "skip=off"]).unwrap();
     let mut gpu = Gpu::new(GpuConfig {
         threads: 1,

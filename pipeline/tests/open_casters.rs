@@ -9,17 +9,18 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use gnomon_pipeline::caster::Caster;
-use gnomon_pipeline::comparison::{Reference, ReferenceKind};
-use gnomon_pipeline::light::{HardLight, Light, LightShape};
-use gnomon_pipeline::mesh::{Mesh, Shading};
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth, PixelTruth};
-use gnomon_pipeline::render::{RenderError, RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Camera, Material, Object, Scene};
-use gnomon_pipeline::shape;
-use gnomon_pipeline::silhouette::light_facing;
-use gnomon_pipeline::technique::{self, Params, TechniqueError, techniques};
+use gnomon_pipeline::geometry::caster::Caster;
+use gnomon_pipeline::geometry::silhouette::light_facing;
+use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
+use gnomon_pipeline::measure::render::{RenderError, RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::{Params, TechniqueError};
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth, PixelTruth};
+use gnomon_pipeline::world::light::{HardLight, Light, LightShape};
+use gnomon_pipeline::world::mesh::{Mesh, Shading};
+use gnomon_pipeline::world::scene::{Camera, Material, Object, Scene};
+use gnomon_pipeline::world::shape;
 use gnomon_raster::GpuConfig;
 
 const SIZE: [u32; 2] = [160, 128];
@@ -141,7 +142,7 @@ fn scenes(caster: &Mesh) -> Vec<Scene> {
 }
 
 fn draw(scene: &Scene, params: &[&str]) -> Result<Rendered, RenderError> {
-    let technique = technique::find("shadow-volumes").unwrap();
+    let technique = techniques::find("shadow-volumes").unwrap();
     let params = Params::parse(technique, params).unwrap();
     let settings = RenderSettings {
         size: SIZE,
@@ -300,7 +301,7 @@ fn negative_control_a_missing_triangle_is_noticed() {
 fn every_technique_with_volumes_refuses_an_open_cylinder() {
     let scene = scenes(&open_cylinder()).remove(0);
     let mut refusing = 0;
-    for technique in techniques() {
+    for technique in techniques::all() {
         if technique.params().iter().all(|p| p.name != "open-casters") {
             continue;
         }
@@ -326,7 +327,7 @@ fn every_technique_with_volumes_refuses_an_open_cylinder() {
 fn soft_rmse(caster: &Mesh) -> f64 {
     let mut scene = scenes(caster).remove(0);
     scene.lights = vec![Light::horizontal_square(DVec3::new(0.4, 3.5, 0.2), 0.8)];
-    let technique = technique::find("soft-shadow-volumes").unwrap();
+    let technique = techniques::find("soft-shadow-volumes").unwrap();
     let params = Params::parse(technique, ["open-casters=generalised"]).unwrap();
     let settings = RenderSettings {
         size: SIZE,

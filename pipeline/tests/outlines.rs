@@ -1,13 +1,14 @@
 //! Silhouettes combined outline by outline instead of caster by caster.
 
 use glam::DVec3;
-use gnomon_pipeline::mesh::{Mesh, Shading};
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::area::VisibilityImage;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Material, Object, Scene, builtin};
-use gnomon_pipeline::shape;
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::area::VisibilityImage;
+use gnomon_pipeline::world::mesh::{Mesh, Shading};
+use gnomon_pipeline::world::scene::{Material, Object, Scene, builtin};
+use gnomon_pipeline::world::shape;
 
 const SIZE: [u32; 2] = [120, 80];
 

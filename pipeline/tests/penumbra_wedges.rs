@@ -3,13 +3,14 @@
 //! culling saves.
 
 use glam::DVec3;
-use gnomon_pipeline::light::{HardLight, Light, LightShape};
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Camera, Material, Object, Scene, builtin};
-use gnomon_pipeline::shape;
-use gnomon_pipeline::technique::{self, Params, VisibilityOutput};
-use gnomon_pipeline::tile_traffic::{Measured, TileTraffic, measure};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::measure::tile_traffic::{Measured, TileTraffic, measure};
+use gnomon_pipeline::technique::{Params, VisibilityOutput};
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::world::light::{HardLight, Light, LightShape};
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::scene::{Camera, Material, Object, Scene, builtin};
+use gnomon_pipeline::world::shape;
 use gnomon_raster::{Gpu, GpuConfig, SimdLevel, Subresource};
 
 const SIZE: [u32; 2] = [160, 120];
@@ -30,7 +31,7 @@ fn with_sphere(mut scene: Scene, radius: f64) -> Scene {
 }
 
 fn params(technique: &str, set: &[&str]) -> Params {
-    Params::parse(technique::find(technique).unwrap(), set).unwrap()
+    Params::parse(techniques::find(technique).unwrap(), set).unwrap()
 }
 
 fn picture(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
@@ -38,14 +39,14 @@ fn picture(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
         size: SIZE,
         ..RenderSettings::default()
     };
-    let found = technique::find(technique).unwrap();
+    let found = techniques::find(technique).unwrap();
     render(scene, found, &params(technique, set), &settings).unwrap()
 }
 
 /// The light-intensity buffer of the first light, as stored.
 fn buffer_with(scene: &Scene, technique: &str, set: &[&str], config: GpuConfig) -> Vec<i16> {
     let mut gpu = Gpu::new(config).unwrap();
-    let found = technique::find(technique).unwrap();
+    let found = techniques::find(technique).unwrap();
     let params = params(technique, set);
     let frame = found.frame(scene, SIZE, &params, &mut gpu).unwrap();
     gpu.submit(&frame.list).unwrap();

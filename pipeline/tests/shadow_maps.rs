@@ -1,16 +1,16 @@
 //! Shadow maps and what is looked up in them: against rays, counted, and with odd
-//! scenes and parameters (IMPLEMENTING §1.11).
+//! scenes and parameters (docs/papers.md, baselines).
 
 mod map_support;
 
 use glam::DVec3;
-use gnomon_pipeline::light::{HardLight, LightShape};
-use gnomon_pipeline::mesh::{Mesh, Shading};
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::hard::HardOracle;
-use gnomon_pipeline::render::Rendered;
-use gnomon_pipeline::scene::{Material, Object, Scene, builtin};
-use gnomon_pipeline::shape;
+use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::hard::HardOracle;
+use gnomon_pipeline::world::light::{HardLight, LightShape};
+use gnomon_pipeline::world::mesh::{Mesh, Shading};
+use gnomon_pipeline::world::scene::{Material, Object, Scene, builtin};
+use gnomon_pipeline::world::shape;
 use map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
 
 /// Whether a shadow map that is right in every texel says so for `point`: whether

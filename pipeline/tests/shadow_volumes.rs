@@ -4,15 +4,16 @@
 
 use std::path::PathBuf;
 
-use gnomon_pipeline::caster::Caster;
-use gnomon_pipeline::heat;
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::obj;
-use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardTruth};
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, builtin, frame_model};
-use gnomon_pipeline::silhouette::{Orientation, Silhouette, light_facing};
-use gnomon_pipeline::technique::{self, Params, VolumeMethod};
+use gnomon_pipeline::geometry::caster::Caster;
+use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use gnomon_pipeline::measure::heat;
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::{Params, VolumeMethod};
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth};
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::obj;
+use gnomon_pipeline::world::scene::{Scene, builtin, frame_model};
 use gnomon_raster::GpuConfig;
 
 const SIZE: [u32; 2] = [160, 128];
@@ -21,7 +22,7 @@ const SIZE: [u32; 2] = [160, 128];
 const EYE_IN_SHADOW: [&str; 2] = ["adversarial", "adversarial-eye-in-shadow"];
 
 fn draw_sized(scene: &Scene, name: &str, params: &[&str], size: [u32; 2]) -> Rendered {
-    let technique = technique::find(name).unwrap();
+    let technique = techniques::find(name).unwrap();
     let params = Params::parse(technique, params).unwrap();
     let gpu = GpuConfig {
         threads: 2,
@@ -251,7 +252,7 @@ fn peer_scenes_do_the_peers_work() {
 fn several_lights_add_up_and_the_first_gives_visibility() {
     let mut scene = builtin::build("columns").unwrap();
     let mut second = scene.lights[0].clone();
-    second.shape = gnomon_pipeline::light::LightShape::Directional {
+    second.shape = gnomon_pipeline::world::light::LightShape::Directional {
         towards: glam::DVec3::new(-0.6, 1.0, 0.4),
     };
     second.colour = [0.3, 0.2, 0.4];
@@ -308,7 +309,7 @@ fn casters_that_cross_the_near_plane_keep_their_caps_to_the_bit() {
     let mut scene = builtin::build("cylinder").unwrap();
     let [_, _, forward] = scene.camera.basis();
     let eye = scene.camera.eye;
-    let slab = gnomon_pipeline::shape::cuboid(
+    let slab = gnomon_pipeline::world::shape::cuboid(
         eye + forward * 2.0 - glam::DVec3::Y * 0.4,
         glam::DVec3::new(0.3, 0.3, 6.0),
     );
@@ -326,7 +327,7 @@ fn casters_that_cross_the_near_plane_keep_their_caps_to_the_bit() {
 #[test]
 fn heat_adds_up_to_the_counters() {
     let scene = builtin::build("columns").unwrap();
-    let technique = technique::find("shadow-volumes").unwrap();
+    let technique = techniques::find("shadow-volumes").unwrap();
     let params = Params::defaults(technique);
     let settings = RenderSettings {
         size: [100, 76],

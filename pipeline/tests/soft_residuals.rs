@@ -5,19 +5,20 @@
 //! The sum: as seen from a receiver, every triangle that faces the light's centre
 //! hides its share of the light; shares add up, and those of triangles whose other
 //! side the receiver sees are taken away. That is what adding silhouette edges comes
-//! to (IMPLEMENTING §0.1), without silhouettes, wedges, planes or buffers.
+//! to (docs/papers.md, paper III), without silhouettes, wedges, planes or buffers.
 
 use std::path::PathBuf;
 
 use glam::DVec3;
-use gnomon_pipeline::comparison::{Reference, ReferenceKind};
-use gnomon_pipeline::light::LightShape;
-use gnomon_pipeline::oracle::area::AreaOracle;
-use gnomon_pipeline::oracle::surfaces::{Receiver, Surfaces};
-use gnomon_pipeline::render::{RenderSettings, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::silhouette::light_facing;
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::geometry::silhouette::light_facing;
+use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
+use gnomon_pipeline::measure::render::{RenderSettings, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::oracle::area::AreaOracle;
+use gnomon_pipeline::truth::oracle::surfaces::{Receiver, Surfaces};
+use gnomon_pipeline::world::light::LightShape;
+use gnomon_pipeline::world::scene::{Scene, builtin};
 
 const SIZE: [u32; 2] = [240, 160];
 /// What counts as off, and as far off.
@@ -197,7 +198,7 @@ fn what_is_off_on_real_meshes_is_the_papers_approximation() {
     }
     for name in ["bunny_5k", "knight", "skeleton_leg_foot", "palm_tree"] {
         let path = folder.join("meshes").join(format!("{name}.obj"));
-        let scene = gnomon_pipeline::scene::open(path.to_str().unwrap()).unwrap();
+        let scene = gnomon_pipeline::world::scene::open(path.to_str().unwrap()).unwrap();
         let found = causes(&scene, &scene);
         assert!(found.off > 100, "{name}: {found:?}");
         // Positions of f32 show next to edges as short as these.

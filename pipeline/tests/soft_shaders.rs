@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use gnomon_pipeline::coverage::{LightPlane, SphereOutline, loop_visibility, umbra_side};
-use gnomon_pipeline::light::LightShape;
+use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline, loop_visibility, umbra_side};
+use gnomon_pipeline::world::light::LightShape;
 use gnomon_raster::shader::{FragmentOutputs, FragmentStage, ScalarFragmentOutput, per_fragment};
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{

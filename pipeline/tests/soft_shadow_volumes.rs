@@ -1,11 +1,12 @@
 //! Soft shadow volumes against the exact oracle and the closed form, and against
 //! themselves where nothing may change a bit.
 
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::area::{LightRegion, VisibilityImage};
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
+use gnomon_pipeline::world::scene::{Scene, builtin};
 use gnomon_raster::{GpuConfig, SimdLevel};
 
 const SIZE: [u32; 2] = [120, 80];
@@ -73,7 +74,7 @@ fn parallel_plates_are_the_closed_form() {
     let exact = error(&scene, &truth, &[]);
     assert!(exact.all.unwrap().rmse < 1e-5);
     // Entries have 8 bits for 0..1/2, and their places are rounded: by measure
-    // 0.0079 RMS and 0.065 at most for one edge (IMPLEMENTING §1.4), of which two
+    // 0.0079 RMS and 0.065 at most for one edge (docs/papers.md, paper III), of which two
     // meet in most places. Filters mix both sides of the light's centre, where the
     // coverage of an edge that ends there jumps: a pixel or two are further off.
     let table = |more: &[&str]| {
@@ -343,10 +344,10 @@ fn capacity_is_reported_when_it_is_reached() {
 
 /// Plates whose edges are behind each other as seen from the light's centre.
 fn stack(count: u32) -> Scene {
-    use gnomon_pipeline::light::Light;
-    use gnomon_pipeline::mesh::Shading;
-    use gnomon_pipeline::scene::{Camera, Material, Object};
-    use gnomon_pipeline::shape;
+    use gnomon_pipeline::world::light::Light;
+    use gnomon_pipeline::world::mesh::Shading;
+    use gnomon_pipeline::world::scene::{Camera, Material, Object};
+    use gnomon_pipeline::world::shape;
     let solid = |name: String, shape: shape::Shape| {
         let mesh = shape.into_mesh(Shading::Flat).unwrap();
         Object::new(name, mesh, Material::matt([0.7; 3]))
@@ -372,7 +373,7 @@ fn stack(count: u32) -> Scene {
 /// light of that half alone.
 #[test]
 fn a_two_colour_light_is_two_half_lights() {
-    use gnomon_pipeline::light::LightShape;
+    use gnomon_pipeline::world::light::LightShape;
     let scene = scene("parallel-plates");
     let mut half = scene.clone();
     let LightShape::Rectangle { centre, edge_u, .. } = &mut half.lights[0].shape else {

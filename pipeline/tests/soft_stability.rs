@@ -6,18 +6,19 @@
 //! the example `breakdown`.
 
 use glam::DVec3;
-use gnomon_pipeline::adjacency::EdgeAdjacency;
-use gnomon_pipeline::area_light::AreaLight;
-use gnomon_pipeline::light::{HardLight, Light, LightShape};
-use gnomon_pipeline::mesh::{Mesh, Shading};
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::area::VisibilityImage;
-use gnomon_pipeline::render::{RenderError, RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Camera, Material, Object, Scene, builtin};
-use gnomon_pipeline::shape::{self, Shape};
-use gnomon_pipeline::silhouette::{Orientation, Silhouette, light_facing};
-use gnomon_pipeline::technique::{Params, Technique, TechniqueError, techniques};
-use gnomon_pipeline::wedge::{Construction, Wedge, WedgeStatistics};
+use gnomon_pipeline::geometry::area_light::AreaLight;
+use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use gnomon_pipeline::geometry::wedge::{Construction, Wedge, WedgeStatistics};
+use gnomon_pipeline::measure::render::{RenderError, RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::{Params, Technique, TechniqueError};
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::area::VisibilityImage;
+use gnomon_pipeline::world::adjacency::EdgeAdjacency;
+use gnomon_pipeline::world::light::{HardLight, Light, LightShape};
+use gnomon_pipeline::world::mesh::{Mesh, Shading};
+use gnomon_pipeline::world::scene::{Camera, Material, Object, Scene, builtin};
+use gnomon_pipeline::world::shape::{self, Shape};
 use gnomon_raster::Counters;
 
 const SIZE: [u32; 2] = [48, 32];
@@ -60,7 +61,7 @@ fn check(what: &str, scene: &Scene, technique: &dyn Technique, picture: &Rendere
 
 /// Every technique stays sane, and skipping changes no bit where there is any.
 fn all_stay_sane(what: &str, scene: &Scene) {
-    for technique in techniques() {
+    for technique in techniques::all() {
         let Some(on) = picture(scene, *technique, &[]) else {
             continue;
         };
@@ -80,7 +81,7 @@ fn all_stay_sane(what: &str, scene: &Scene) {
 /// The largest error of `technique` against the oracle.
 fn worst(scene: &Scene, technique: &str) -> f64 {
     let truth = VisibilityImage::of_scene(scene, 0, SIZE, &|| ()).unwrap();
-    let technique = gnomon_pipeline::technique::find(technique).unwrap();
+    let technique = gnomon_pipeline::techniques::find(technique).unwrap();
     let picture = picture(scene, technique, &[]).unwrap();
     let error = VisibilityError::measure(&truth, SIZE, &picture.visibility).unwrap();
     error.all.unwrap().max

@@ -3,11 +3,12 @@
 
 use std::sync::Arc;
 
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::shape::bevelled_plate_in_pieces;
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::scene::{Scene, builtin};
+use gnomon_pipeline::world::shape::bevelled_plate_in_pieces;
 
 /// The parallel plates with each edge of the plate in `pieces`.
 fn plates(pieces: u32) -> Scene {

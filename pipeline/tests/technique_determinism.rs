@@ -1,9 +1,10 @@
 //! Every technique of the registry gives the same bits for every thread count,
 //! execution tile and SIMD level, and with culling on and off.
 
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::builtin;
-use gnomon_pipeline::technique::{Params, Technique, techniques};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::{Params, Technique};
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::world::scene::builtin;
 use gnomon_raster::{GpuConfig, SimdLevel};
 
 fn picture(scene: &str, technique: &dyn Technique, gpu: GpuConfig, skip: bool) -> Rendered {
@@ -21,7 +22,7 @@ fn picture(scene: &str, technique: &dyn Technique, gpu: GpuConfig, skip: bool) -
 
 #[test]
 fn the_registry_gives_the_same_bits_everywhere() {
-    for technique in techniques() {
+    for technique in techniques::all() {
         for scene in ["demo", "adversarial-eye-in-shadow"] {
             let mut first = None;
             for (turn, simd) in SimdLevel::available().into_iter().enumerate() {

@@ -4,10 +4,10 @@
 mod wedge_support;
 
 use glam::DVec3;
-use gnomon_pipeline::area_light::AreaLight;
-use gnomon_pipeline::coverage::{LightPlane, SphereOutline, loop_visibility};
-use gnomon_pipeline::light::LightShape;
-use gnomon_pipeline::wedge::{Construction, Wedge, WedgeStatistics};
+use gnomon_pipeline::geometry::area_light::AreaLight;
+use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline, loop_visibility};
+use gnomon_pipeline::geometry::wedge::{Construction, Wedge, WedgeStatistics};
+use gnomon_pipeline::world::light::LightShape;
 use wedge_support::{Frame, KINDS, Kind, Random, light_point, shape};
 
 const CONSTRUCTIONS: [Construction; 3] = [

@@ -3,15 +3,15 @@
 mod wedge_support;
 
 use glam::DVec3;
-use gnomon_pipeline::adjacency::EdgeAdjacency;
-use gnomon_pipeline::coverage::{LightPlane, SphereOutline};
-use gnomon_pipeline::light::HardLight;
-use gnomon_pipeline::mesh::{Mesh, Shading};
-use gnomon_pipeline::shape::icosphere;
-use gnomon_pipeline::silhouette::{Orientation, Silhouette, light_facing};
-use gnomon_pipeline::volume::ShadowVolume;
-use gnomon_pipeline::wedge::polyhedron::Ends;
-use gnomon_pipeline::wedge::{Construction, Plane, Wedge, WedgeStatistics};
+use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline};
+use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use gnomon_pipeline::geometry::volume::ShadowVolume;
+use gnomon_pipeline::geometry::wedge::polyhedron::Ends;
+use gnomon_pipeline::geometry::wedge::{Construction, Plane, Wedge, WedgeStatistics};
+use gnomon_pipeline::world::adjacency::EdgeAdjacency;
+use gnomon_pipeline::world::light::HardLight;
+use gnomon_pipeline::world::mesh::{Mesh, Shading};
+use gnomon_pipeline::world::shape::icosphere;
 use wedge_support::{
     Frame, KINDS, Kind, Random, edge, generators, grazing_point, inside, light, shape, winding,
 };

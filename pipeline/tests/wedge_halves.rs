@@ -2,11 +2,12 @@
 //! same bits as whole wedges and as no culling, for half the colour traffic.
 
 use glam::DVec3;
-use gnomon_pipeline::light::{Light, LightShape};
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::technique::{Params, find};
-use gnomon_pipeline::wedge_work::WedgeWork;
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::measure::wedge_work::WedgeWork;
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::world::light::{Light, LightShape};
+use gnomon_pipeline::world::scene::{Scene, builtin};
 use gnomon_raster::Counters;
 
 const SIZE: [u32; 2] = [120, 80];

@@ -4,8 +4,8 @@
 mod wedge_support;
 
 use glam::DVec3;
-use gnomon_pipeline::wedge::WedgeMesh;
-use gnomon_pipeline::wedge::paper1::{
+use gnomon_pipeline::geometry::wedge::WedgeMesh;
+use gnomon_pipeline::geometry::wedge::paper1::{
     LinkedSettings, LinkedStatistics, LinkedWedge, Overlap, link, smoothed,
 };
 use wedge_support::{Random, winding};

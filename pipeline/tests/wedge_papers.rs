@@ -3,9 +3,9 @@
 mod wedge_support;
 
 use glam::DVec3;
-use gnomon_pipeline::area_light::AreaLight;
-use gnomon_pipeline::wedge::polyhedron::{Ends, Polyhedron};
-use gnomon_pipeline::wedge::{Construction, Wedge, WedgeStatistics};
+use gnomon_pipeline::geometry::area_light::AreaLight;
+use gnomon_pipeline::geometry::wedge::polyhedron::{Ends, Polyhedron};
+use gnomon_pipeline::geometry::wedge::{Construction, Wedge, WedgeStatistics};
 use wedge_support::{
     Frame, KINDS, Kind, Random, edge, grazing_point, inside, light, light_point, shape, winding,
 };

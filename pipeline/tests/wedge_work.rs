@@ -1,15 +1,16 @@
 //! Only pixels inside penumbrae run the penumbra shader: shaded fragments over
 //! (penumbra pixels x covering wedges), against a count in f64.
 
-use gnomon_pipeline::adjacency::EdgeAdjacency;
-use gnomon_pipeline::area_light::AreaLight;
-use gnomon_pipeline::oracle::surfaces::Surfaces;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, builtin};
-use gnomon_pipeline::silhouette::{Orientation, Silhouette, light_facing};
-use gnomon_pipeline::technique::{Params, find};
-use gnomon_pipeline::wedge::{Construction, Wedge, WedgeStatistics};
-use gnomon_pipeline::wedge_work::WedgeWork;
+use gnomon_pipeline::geometry::area_light::AreaLight;
+use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use gnomon_pipeline::geometry::wedge::{Construction, Wedge, WedgeStatistics};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::measure::wedge_work::WedgeWork;
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::oracle::surfaces::Surfaces;
+use gnomon_pipeline::world::adjacency::EdgeAdjacency;
+use gnomon_pipeline::world::scene::{Scene, builtin};
 
 const SIZE: [u32; 2] = [240, 160];
 
@@ -53,7 +54,7 @@ fn pairs(scene: &Scene) -> u64 {
     let wedges = penumbrae(scene);
     let at = |x: u32, y: u32| surfaces.receiver(&rays, f64::from(x) + 0.5, f64::from(y) + 0.5);
     let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
-    let covering = |receiver: gnomon_pipeline::oracle::surfaces::Receiver| {
+    let covering = |receiver: gnomon_pipeline::truth::oracle::surfaces::Receiver| {
         let holds = |w: &&Wedge| w.volume.contains(receiver.point);
         wedges.iter().filter(holds).count() as u64
     };

@@ -1,5 +1,5 @@
 //! Light views: planar pictures of the casters from a point of a light, and where
-//! in such a picture a world-space position lies (IMPLEMENTING §1.7, §1.11).
+//! in such a picture a world-space position lies (docs/papers.md, Annen et al. 2008 and baselines).
 //!
 //! Depth is *linear* and *planar*: the distance from the light's centre along the
 //! view's axis, not along the ray, scaled to 0..1 between two distances. Similar
@@ -228,7 +228,7 @@ impl LightMapping {
 
     /// Half the width in u (and in v) of what lies between a receiver at distance
     /// `receiver` and a light of the given half width, at distance `blocker`
-    /// (world units): `W(z)/2` of IMPLEMENTING §1.7.
+    /// (world units): `W(z)/2` of docs/papers.md, Annen et al. 2008.
     #[inline(always)]
     #[must_use]
     pub fn half_width<L: Lanes>(

@@ -1,5 +1,5 @@
 //! Shadows looked up in light views: hard, filtered by a fixed kernel, or by one
-//! as wide as the light seems through the blockers (IMPLEMENTING §1.11).
+//! as wide as the light seems through the blockers (docs/papers.md, baselines).
 //!
 //! All draw one triangle over the screen for each view, with positions in texture
 //! 0 and the view's depths in texture 1. Fragments that are no receivers of the

@@ -1,4 +1,4 @@
-//! Soft shadow volumes on a float visibility buffer (paper III; IMPLEMENTING §0.1
+//! Soft shadow volumes on a float visibility buffer (paper III; docs/papers.md, paper III
 //! and §1.4): hard shadow quads count, penumbra wedges correct.
 //!
 //! Both read where the fragment's surface is from texture 0 (w is 0 where no

@@ -7,10 +7,11 @@
 
 use std::path::{Path, PathBuf};
 
-use gnomon_pipeline::oracle::hard::{EdgeTolerance, HardOracle, HardTruth};
-use gnomon_pipeline::render::{RenderSettings, render};
-use gnomon_pipeline::scene::{EyeRays, Scene, builtin};
-use gnomon_pipeline::technique::{self, Params};
+use gnomon_pipeline::measure::render::{RenderSettings, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques;
+use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardOracle, HardTruth};
+use gnomon_pipeline::world::scene::{EyeRays, Scene, builtin};
 use gnomon_raster::GpuConfig;
 use gnomon_tests::npy::ByteImage;
 
@@ -156,7 +157,7 @@ impl Truths {
 }
 
 fn our_stencil(scene: &Scene, size: u32) -> Vec<u8> {
-    let technique = technique::find("shadow-volumes").expect("a built-in technique");
+    let technique = techniques::find("shadow-volumes").expect("a built-in technique");
     let params = Params::parse(technique, ["method=zfail", "depth-format=d24"]).expect("valid");
     let settings = RenderSettings {
         size: [size; 2],

@@ -1,6 +1,6 @@
 //! Plots of what was measured.
 
-use gnomon_pipeline::chart::{Axis, Chart, Series};
+use gnomon_claims::chart::{Axis, Chart, Series};
 
 use crate::measure::{FILTERS, ORDERS, PCSS, Row, SIDES, TECHNIQUE};
 

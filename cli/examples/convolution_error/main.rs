@@ -23,7 +23,7 @@ mod draw;
 use std::error::Error;
 use std::path::Path;
 
-use gnomon_pipeline::scene;
+use gnomon_pipeline::world::scene;
 
 use measure::{Row, measure};
 

@@ -3,13 +3,14 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
-use gnomon_pipeline::comparison::{BANDING_EDGE, Reference, ReferenceKind, facing};
-use gnomon_pipeline::metrics::banding::Banding;
-use gnomon_pipeline::metrics::visibility::VisibilityError;
-use gnomon_pipeline::oracle::area::LightRegion;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::Scene;
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::comparison::{BANDING_EDGE, Reference, ReferenceKind, facing};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::banding::Banding;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::area::LightRegion;
+use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::GpuConfig;
 
 const SIZE: [u32; 2] = [320, 240];

@@ -1,9 +1,8 @@
 //! Flags of environment lighting.
 
 use clap::{Args, ValueEnum};
-use gnomon_pipeline::environment::{
-    EnvironmentRequest, FitSettings, LightForm, MapSettings, ResidualRule,
-};
+use gnomon_pipeline::world::environment::{FitSettings, LightForm, MapSettings, ResidualRule};
+use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
 
 /// A map that lights the scene alone, and how lights are fitted to it.
 #[derive(Debug, Args)]

@@ -1,6 +1,6 @@
 //! From homogeneous world points to pixels, clipped at the near plane.
 
-use gnomon_pipeline::scene::Camera;
+use gnomon_pipeline::world::scene::Camera;
 
 /// Coordinates beyond this many image sizes are cut, so that no path is absurdly long.
 const GUARD: f64 = 16.0;

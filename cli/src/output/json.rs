@@ -1,8 +1,8 @@
 //! The JSON documents; `docs/json.md` describes them. Keys are only ever added.
 
-use gnomon_pipeline::render::Rendered;
+use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::measure::wedge_work::WedgeWork;
 use gnomon_pipeline::technique::{Params, Technique, VolumeMethod, Warning};
-use gnomon_pipeline::wedge_work::WedgeWork;
 use gnomon_raster::{
     ClientTraffic, Counters, FragmentCounters, GpuConfig, PassReport, SubmitReport, TileCounters,
     Traffic,
@@ -54,7 +54,7 @@ pub(crate) struct RenderDocument {
 /// What the scene and flags say about a render.
 #[derive(Clone, Copy)]
 pub(crate) struct RenderJob<'a> {
-    pub(crate) scene: &'a gnomon_pipeline::scene::Scene,
+    pub(crate) scene: &'a gnomon_pipeline::world::scene::Scene,
     pub(crate) technique: &'static dyn Technique,
     pub(crate) params: &'a Params,
     pub(crate) gpu: GpuConfig,
@@ -249,7 +249,7 @@ fn merged(times: &[(String, f64)]) -> Object<f64> {
     Object(out)
 }
 
-fn casters(scene: &gnomon_pipeline::scene::Scene, done: &Rendered) -> Vec<CasterDocument> {
+fn casters(scene: &gnomon_pipeline::world::scene::Scene, done: &Rendered) -> Vec<CasterDocument> {
     let describe = |c: &gnomon_pipeline::technique::CasterUse| CasterDocument {
         object: scene.objects[c.object].name.clone(),
         light: c.light,

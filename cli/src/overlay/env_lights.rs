@@ -1,9 +1,9 @@
 //! The environment's map as a cross of cube faces, with the fitted lights
 //! outlined (Annen et al. 2008, figures 6 and 10).
 
-use gnomon_pipeline::environment::PlacedEnvironment;
-use gnomon_pipeline::environment::cube::{self, luminance};
-use gnomon_pipeline::render::SrgbEncoder;
+use gnomon_pipeline::measure::render::SrgbEncoder;
+use gnomon_pipeline::world::environment::PlacedEnvironment;
+use gnomon_pipeline::world::environment::cube::{self, luminance};
 
 use super::Source;
 use crate::draw::{Canvas, Legend, Picture, Stroke, Swatch, heat};

@@ -9,11 +9,11 @@ mod traffic;
 mod volumes;
 mod wedges;
 
-use gnomon_pipeline::heat::Heat;
-use gnomon_pipeline::render::Rendered;
-use gnomon_pipeline::scene::Scene;
-use gnomon_pipeline::scene_wedges::SceneWedges;
+use gnomon_pipeline::measure::heat::Heat;
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::scene_wedges::SceneWedges;
+use gnomon_pipeline::world::scene::Scene;
 
 use crate::args::OverlayKind;
 use crate::draw::Picture;

@@ -1,11 +1,11 @@
 //! Sides of shadow volumes, one per silhouette edge.
 
 use glam::DVec3;
-use gnomon_pipeline::caster::Caster;
-use gnomon_pipeline::light::HardLight;
-use gnomon_pipeline::scene::Scene;
+use gnomon_pipeline::geometry::caster::Caster;
+use gnomon_pipeline::geometry::volume::ShadowVolume;
 use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::volume::ShadowVolume;
+use gnomon_pipeline::world::light::HardLight;
+use gnomon_pipeline::world::scene::Scene;
 
 /// The side of a volume behind one silhouette edge.
 #[derive(Clone, Copy, Debug)]
@@ -71,8 +71,8 @@ fn faces(b: [f32; 4], a: [f32; 4], far: [f32; 4], eye: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gnomon_pipeline::scene::builtin;
-    use gnomon_pipeline::technique::find;
+    use gnomon_pipeline::techniques::find;
+    use gnomon_pipeline::world::scene::builtin;
 
     #[test]
     fn a_volume_has_front_and_back_sides() {

@@ -22,7 +22,7 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
             }
         }
     }
-    let sum = |client: fn(&gnomon_pipeline::heat::BlockBytes) -> u64| {
+    let sum = |client: fn(&gnomon_pipeline::measure::heat::BlockBytes) -> u64| {
         numbers::bytes(blocks.iter().map(client).sum())
     };
     let legend = Legend {

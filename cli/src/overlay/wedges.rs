@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat4, DVec4};
-use gnomon_pipeline::scene_wedges::WedgeKind;
-use gnomon_pipeline::wedge::{Construction, WedgeMesh};
+use gnomon_pipeline::geometry::wedge::{Construction, WedgeMesh};
+use gnomon_pipeline::techniques::scene_wedges::WedgeKind;
 
 use super::Source;
 use crate::draw::{Canvas, Legend, Picture, Projection, Stroke, Swatch, heat};
@@ -103,9 +103,10 @@ fn coplanar(points: [DVec4; 4]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use gnomon_pipeline::scene::builtin;
-    use gnomon_pipeline::scene_wedges;
-    use gnomon_pipeline::technique::{Params, find};
+    use gnomon_pipeline::technique::Params;
+    use gnomon_pipeline::techniques::find;
+    use gnomon_pipeline::techniques::scene_wedges;
+    use gnomon_pipeline::world::scene::builtin;
 
     use super::*;
 

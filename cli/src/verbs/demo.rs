@@ -8,8 +8,8 @@ mod shots;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gnomon_pipeline::heat;
-use gnomon_pipeline::scene::{Scene, builtin};
+use gnomon_pipeline::measure::heat;
+use gnomon_pipeline::world::scene::{Scene, builtin};
 use serde::Serialize;
 
 use checks::Checks;
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     files::check_target(&args.out_dir.join("report.html"))?;
     let progress = Progress::new((ENTRIES.len() + OVERLAYS.len() + 1) as u64);
     progress.doing("building the scene");
-    let scene = builtin::build(SCENE).map_err(gnomon_pipeline::scene::SceneError::from)?;
+    let scene = builtin::build(SCENE).map_err(gnomon_pipeline::world::scene::SceneError::from)?;
     let shots = shoot(&scene, args, &progress)?;
     let checks = Checks::of(&shots);
     progress.doing("measuring errors");

@@ -4,12 +4,13 @@ mod frames;
 
 use std::path::{Path, PathBuf};
 
-use gnomon_pipeline::heat::{self, Heat};
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, SceneSource};
-use gnomon_pipeline::scene_wedges::{self, SceneWedges};
-use gnomon_pipeline::technique::{Params, Technique, find, techniques};
-use gnomon_pipeline::wedge_work::WedgeWork;
+use gnomon_pipeline::measure::heat::{self, Heat};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::measure::wedge_work::WedgeWork;
+use gnomon_pipeline::technique::{Params, Technique};
+use gnomon_pipeline::techniques::scene_wedges::{self, SceneWedges};
+use gnomon_pipeline::techniques::{self, find};
+use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
 use crate::args::{OverlayKind, RenderArgs};
 use crate::error::CliError;
@@ -161,7 +162,7 @@ fn check_wedges(
     if !wanted || scene_wedges::kind(technique, params).is_some() {
         return Ok(());
     }
-    let with_wedges = techniques().iter().filter(|t| {
+    let with_wedges = techniques::all().iter().filter(|t| {
         let params = Params::defaults(**t);
         scene_wedges::kind(**t, &params).is_some()
     });

@@ -1,7 +1,7 @@
 //! `gnomon scenes`.
 
-use gnomon_pipeline::scene::Scene;
-use gnomon_pipeline::scene::builtin::{BuiltinScene, SCENES};
+use gnomon_pipeline::world::scene::Scene;
+use gnomon_pipeline::world::scene::builtin::{BuiltinScene, SCENES};
 use serde::Serialize;
 
 use crate::args::ListArgs;

@@ -1,6 +1,7 @@
 //! `gnomon techniques`.
 
-use gnomon_pipeline::technique::{ParamInfo, Technique, techniques};
+use gnomon_pipeline::technique::{ParamInfo, Technique};
+use gnomon_pipeline::techniques;
 use serde::Serialize;
 
 use crate::args::ListArgs;
@@ -50,11 +51,11 @@ fn document(technique: &dyn Technique) -> TechniqueDocument {
 /// Lists the techniques with their parameters.
 pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
     if args.json {
-        let techniques = techniques().iter().map(|t| document(*t)).collect();
+        let techniques = techniques::all().iter().map(|t| document(*t)).collect();
         return output::print_json(&TechniquesDocument { techniques });
     }
     let mut text = String::new();
-    for technique in techniques() {
+    for technique in techniques::all() {
         text += &hanging(&format!("{}  ", technique.name()), 4, technique.summary());
         for p in technique.params() {
             let values = p.valid.replace('|', ", ");

@@ -2,7 +2,7 @@
 
 use gnomon_raster::{CommandList, TextureId};
 
-use crate::scene::SceneWarning;
+use crate::world::scene::SceneWarning;
 
 /// Something amiss that did not stop the work: code, count, message.
 pub type Warning = SceneWarning;
@@ -78,9 +78,9 @@ pub enum VolumeMethod {
 /// What became of one caster for one light.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CasterUse {
-    /// Index into [`crate::scene::Scene::objects`].
+    /// Index into [`crate::world::scene::Scene::objects`].
     pub object: usize,
-    /// Index into [`crate::scene::Scene::lights`].
+    /// Index into [`crate::world::scene::Scene::lights`].
     pub light: usize,
     /// How it was counted.
     pub method: VolumeMethod,

@@ -1,11 +1,8 @@
-//! What a shadow technique is, and the list of all of them.
+//! What a shadow technique is; the list of all of them is in [`crate::techniques`].
 //!
 //! A technique is a pure function from a scene and parameters to a [`Frame`]:
 //! command lists for the emulated GPU and the names of their outputs. It
-//! touches no thread, clock or file; [`crate::render`] runs it.
-//!
-//! To add one, write its file in `techniques/` and add one line to
-//! [`techniques`]; command line, suites and tables pick it up from there.
+//! touches no thread, clock or file; [`crate::measure::render`] runs it.
 
 mod frame;
 mod params;
@@ -16,14 +13,9 @@ use thiserror::Error;
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
 pub use params::{ParamInfo, Params};
 
-use crate::caster::RefusedCaster;
-use crate::error::LightError;
-use crate::scene::Scene;
-use crate::techniques::{
-    ConvolutionSoftShadows, MixedLights, Pcf, Pcss, PenumbraWedges, PenumbraWedgesRestructured,
-    SampledShadowVolumes, ShadowMap, ShadowMapsN, ShadowVolumes, SoftShadowVolumes,
-    SoftShadowVolumesOptimised, Unshadowed,
-};
+use crate::geometry::caster::RefusedCaster;
+use crate::world::error::LightError;
+use crate::world::scene::Scene;
 
 /// Creates the textures of a frame. A [`Gpu`] is one.
 pub trait TextureSource {
@@ -84,49 +76,12 @@ pub trait Technique: Sync {
     ) -> Result<Frame, TechniqueError>;
 }
 
-/// All techniques, in the order in which they are listed.
-pub fn techniques() -> &'static [&'static dyn Technique] {
-    static LIST: &[&dyn Technique] = &[
-        &Unshadowed,
-        &ShadowVolumes,
-        &SampledShadowVolumes,
-        &PenumbraWedges,
-        &PenumbraWedgesRestructured,
-        &SoftShadowVolumes,
-        &SoftShadowVolumesOptimised,
-        &ShadowMap,
-        &Pcf,
-        &Pcss,
-        &ShadowMapsN,
-        &ConvolutionSoftShadows,
-        &MixedLights,
-    ];
-    LIST
-}
-
-/// The technique called `name`.
-///
-/// # Errors
-/// There is none: the error lists all names and suggests the nearest.
-pub fn find(name: &str) -> Result<&'static dyn Technique, TechniqueError> {
-    let all = techniques();
-    if let Some(technique) = all.iter().find(|t| t.name() == name) {
-        return Ok(*technique);
-    }
-    let known: Vec<&'static str> = all.iter().map(|t| t.name()).collect();
-    Err(TechniqueError::Unknown {
-        name: name.to_owned(),
-        nearest: crate::error::nearest(name, &known),
-        known,
-    })
-}
-
 /// Why a technique gives no frame.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum TechniqueError {
     /// No technique of that name.
-    #[error("no technique is called '{name}'{}; there are: {}", crate::error::suggestion(.nearest), .known.join(", "))]
+    #[error("no technique is called '{name}'{}; there are: {}", crate::world::error::suggestion(.nearest), .known.join(", "))]
     Unknown {
         /// The name asked for.
         name: String,
@@ -144,7 +99,7 @@ pub enum TechniqueError {
     /// No parameter of that name.
     #[error(
         "technique '{technique}' has no parameter '{key}'{}; it has: {}",
-        crate::error::suggestion(.nearest), .known.join(", ")
+        crate::world::error::suggestion(.nearest), .known.join(", ")
     )]
     UnknownParameter {
         /// The technique.
@@ -197,32 +152,4 @@ pub enum TechniqueError {
     /// The GPU refuses a texture.
     #[error(transparent)]
     Gpu(#[from] gnomon_raster::Error),
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn techniques_are_found_by_name() {
-        for technique in techniques() {
-            assert_eq!(find(technique.name()).unwrap().name(), technique.name());
-            assert!(!technique.summary().is_empty());
-        }
-        let message = find("shadow-volume").err().unwrap().to_string();
-        assert!(
-            message.contains("did you mean 'shadow-volumes'") && message.contains("unshadowed"),
-            "{message}"
-        );
-    }
-
-    #[test]
-    fn defaults_are_valid_values() {
-        for technique in techniques() {
-            for info in technique.params() {
-                let given = format!("{}={}", info.name, info.default);
-                Params::parse(*technique, [given]).unwrap();
-            }
-        }
-    }
 }

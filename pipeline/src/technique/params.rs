@@ -84,7 +84,7 @@ impl Params {
             return Err(TechniqueError::UnknownParameter {
                 technique: technique.name(),
                 key: key.to_owned(),
-                nearest: crate::error::nearest(key, &names),
+                nearest: crate::world::error::nearest(key, &names),
                 known: names,
             });
         };
@@ -117,7 +117,7 @@ impl Params {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::technique::find;
+    use crate::techniques::find;
 
     fn parse(assignments: &[&str]) -> Result<Params, String> {
         Params::parse(find("shadow-volumes").unwrap(), assignments).map_err(|e| e.to_string())

@@ -15,11 +15,12 @@ use gnomon_raster::{LoadOp, RenderPass, RenderPipeline, TextureId};
 use gnomon_shaders::soft_volumes::Resolve;
 use gnomon_shaders::transform::FullScreen;
 
-use super::casters::SKIP;
-use super::passes;
-use super::visibility::{attachment, binding, full_screen};
-use crate::scene::Scene;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, find};
+use crate::parts::casters::SKIP;
+use crate::parts::passes;
+use crate::parts::visibility::{attachment, binding, full_screen};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::techniques::find;
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct MixedLights;
@@ -269,9 +270,9 @@ fn addition(color: TextureId, light: TextureId) -> RenderPass {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::Light;
-    use crate::render::{RenderSettings, Rendered, render};
-    use crate::scene::builtin;
+    use crate::measure::render::{RenderSettings, Rendered, render};
+    use crate::world::light::Light;
+    use crate::world::scene::builtin;
     use glam::DVec3;
 
     /// Three lights, the second one the brightest, the first one the faintest.

@@ -1,18 +1,12 @@
-//! The techniques, one file each; the list is [`crate::technique::techniques`].
+//! The techniques, one file each, and the list of them.
+//!
+//! To add one, write its file here and add one line to [`all`]; command line,
+//! suites and tables pick it up from there.
 
-mod casters;
 mod convolution_soft_shadows;
-mod given_visibility;
-mod horizon;
-mod light_view;
-mod lit_tiles;
-mod mapped;
 mod mixed_lights;
-mod near_pyramid;
-mod passes;
 mod pcf;
 mod pcss;
-mod penumbra;
 mod penumbra_wedges;
 pub(crate) mod penumbra_wedges_restructured;
 mod sampled_shadow_volumes;
@@ -20,27 +14,88 @@ pub mod scene_wedges;
 mod shadow_map;
 mod shadow_maps_n;
 mod shadow_volumes;
-mod soft;
 mod soft_shadow_volumes;
 mod soft_shadow_volumes_optimised;
-mod surface_draw;
-mod targets;
 mod unshadowed;
-mod view;
-mod visibility;
-mod volume_draws;
 
-pub(crate) use convolution_soft_shadows::ConvolutionSoftShadows;
-pub(crate) use given_visibility::GivenVisibility;
-pub(crate) use mixed_lights::MixedLights;
-pub(crate) use pcf::Pcf;
-pub(crate) use pcss::Pcss;
-pub(crate) use penumbra_wedges::PenumbraWedges;
-pub(crate) use penumbra_wedges_restructured::PenumbraWedgesRestructured;
-pub(crate) use sampled_shadow_volumes::SampledShadowVolumes;
-pub(crate) use shadow_map::ShadowMap;
-pub(crate) use shadow_maps_n::ShadowMapsN;
-pub(crate) use shadow_volumes::ShadowVolumes;
-pub(crate) use soft_shadow_volumes::SoftShadowVolumes;
-pub(crate) use soft_shadow_volumes_optimised::SoftShadowVolumesOptimised;
-pub(crate) use unshadowed::Unshadowed;
+use convolution_soft_shadows::ConvolutionSoftShadows;
+use mixed_lights::MixedLights;
+use pcf::Pcf;
+use pcss::Pcss;
+use penumbra_wedges::PenumbraWedges;
+use penumbra_wedges_restructured::PenumbraWedgesRestructured;
+use sampled_shadow_volumes::SampledShadowVolumes;
+use shadow_map::ShadowMap;
+use shadow_maps_n::ShadowMapsN;
+use shadow_volumes::ShadowVolumes;
+use soft_shadow_volumes::SoftShadowVolumes;
+use soft_shadow_volumes_optimised::SoftShadowVolumesOptimised;
+use unshadowed::Unshadowed;
+
+use crate::technique::{Technique, TechniqueError};
+
+/// All techniques, in the order in which they are listed.
+pub fn all() -> &'static [&'static dyn Technique] {
+    static LIST: &[&dyn Technique] = &[
+        &Unshadowed,
+        &ShadowVolumes,
+        &SampledShadowVolumes,
+        &PenumbraWedges,
+        &PenumbraWedgesRestructured,
+        &SoftShadowVolumes,
+        &SoftShadowVolumesOptimised,
+        &ShadowMap,
+        &Pcf,
+        &Pcss,
+        &ShadowMapsN,
+        &ConvolutionSoftShadows,
+        &MixedLights,
+    ];
+    LIST
+}
+
+/// The technique called `name`.
+///
+/// # Errors
+/// There is none: the error lists all names and suggests the nearest.
+pub fn find(name: &str) -> Result<&'static dyn Technique, TechniqueError> {
+    let all = all();
+    if let Some(technique) = all.iter().find(|t| t.name() == name) {
+        return Ok(*technique);
+    }
+    let known: Vec<&'static str> = all.iter().map(|t| t.name()).collect();
+    Err(TechniqueError::Unknown {
+        name: name.to_owned(),
+        nearest: crate::world::error::nearest(name, &known),
+        known,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::technique::Params;
+
+    #[test]
+    fn techniques_are_found_by_name() {
+        for technique in all() {
+            assert_eq!(find(technique.name()).unwrap().name(), technique.name());
+            assert!(!technique.summary().is_empty());
+        }
+        let message = find("shadow-volume").err().unwrap().to_string();
+        assert!(
+            message.contains("did you mean 'shadow-volumes'") && message.contains("unshadowed"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn defaults_are_valid_values() {
+        for technique in all() {
+            for info in technique.params() {
+                let given = format!("{}={}", info.name, info.default);
+                Params::parse(*technique, [given]).unwrap();
+            }
+        }
+    }
+}

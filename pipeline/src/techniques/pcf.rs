@@ -1,14 +1,14 @@
 //! Percentage-closer filtering: depths are compared one by one, then the outcomes
-//! are filtered by one kernel for all receivers (IMPLEMENTING §1.11). It hides the
+//! are filtered by one kernel for all receivers (docs/papers.md, baselines). It hides the
 //! texels of hard shadows. It is no soft shadow: the kernel knows nothing of light
 //! and blockers, which the parallel plates show.
 
 use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps};
 
-use super::mapped::{self, Mapped, Margin, Sources};
-use super::passes;
-use crate::scene::Scene;
+use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
+use crate::parts::passes;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct Pcf;

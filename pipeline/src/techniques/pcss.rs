@@ -1,6 +1,6 @@
 //! Percentage-closer soft shadows: the mean depth of what blocks round a receiver
-//! gives the width of the kernel that depths are then compared in (IMPLEMENTING
-//! §1.11).
+//! gives the width of the kernel that depths are then compared in (docs/papers.md,
+//! baselines).
 //!
 //! Blockers are looked for as far as the light seems wide through the view's near
 //! distance, W(z_n); only those that block count for the mean z_avg; depths are
@@ -18,11 +18,11 @@ use std::sync::Arc;
 
 use gnomon_shaders::shadow_maps::{SampledKernel, WholeKernel};
 
-use super::horizon::HORIZON;
-use super::mapped::{self, Mapped, Margin, Sources};
-use super::passes;
-use crate::scene::Scene;
+use crate::parts::horizon::HORIZON;
+use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
+use crate::parts::passes;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct Pcss;

@@ -42,19 +42,19 @@ use gnomon_shaders::penumbra::crossing::WedgeCrossing;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 use gnomon_shaders::transform::HomogeneousPoints;
 
-use super::casters::{self, Examined, OPEN_CASTERS};
-use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::penumbra::light::{self, LightSphere};
-use super::penumbra::report::Met;
-use super::penumbra::screen::{self, Screen};
-use super::penumbra::volume::SoftVolume;
-use super::penumbra::{self, EXTRA_WEDGES, INTERPOLATION, hard};
-use super::visibility::{binding, homogeneous, homogeneous_draw};
-use crate::scene::Scene;
+use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge, smoothed};
+use crate::parts::casters::{self, Examined, OPEN_CASTERS};
+use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::visibility::{binding, homogeneous, homogeneous_draw};
+use crate::parts::wedges::penumbra::light::{self, LightSphere};
+use crate::parts::wedges::penumbra::report::Met;
+use crate::parts::wedges::penumbra::screen::{self, Screen};
+use crate::parts::wedges::penumbra::volume::SoftVolume;
+use crate::parts::wedges::penumbra::{self, EXTRA_WEDGES, INTERPOLATION, hard};
 use crate::technique::{
     CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
 };
-use crate::wedge::paper1::{LinkedSettings, LinkedWedge, smoothed};
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct PenumbraWedges;

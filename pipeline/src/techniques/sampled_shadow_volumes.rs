@@ -1,6 +1,6 @@
 //! The papers' reference: the mean of N hard shadow images, one for each of N
 //! points of the light, all of it on the emulated GPU, so that its traffic is
-//! counted (paper III §5, paper IV §6; IMPLEMENTING §0.6, §4).
+//! counted (paper III §5, paper IV §6; docs/papers.md, baselines).
 //!
 //! A pass for each light has, for each point, the volumes of all casters into
 //! the stencil, and then one triangle over the whole image that adds 1/N to a
@@ -24,16 +24,16 @@ use gnomon_raster::{Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureDes
 use gnomon_shaders::surface::Constant;
 use gnomon_shaders::transform::FullScreen;
 
-use super::casters;
-use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::visibility::{VisibilityTexture, attachment, full_screen};
-use super::volume_draws::{self, Casters};
-use crate::light_samples::{Pattern, UnknownPattern, light_points};
-use crate::scene::Scene;
+use crate::parts::casters;
+use crate::parts::light_samples::{Pattern, UnknownPattern, light_points};
+use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::visibility::{VisibilityTexture, attachment, full_screen};
+use crate::parts::volumes::volume_draws::{self, Casters};
 use crate::technique::{
     CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, VolumeMethod,
     Warning,
 };
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct SampledShadowVolumes;
@@ -263,10 +263,10 @@ fn accumulation(weight: f32) -> Draw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::LightShape;
-    use crate::render::{RenderSettings, Rendered, render};
-    use crate::scene::builtin;
-    use crate::technique::find;
+    use crate::measure::render::{RenderSettings, Rendered, render};
+    use crate::techniques::find;
+    use crate::world::light::LightShape;
+    use crate::world::scene::builtin;
 
     fn rendered(scene: &Scene, technique: &str, given: &[&str]) -> Rendered {
         let technique = find(technique).unwrap();
@@ -307,7 +307,7 @@ mod tests {
         let mut sum = vec![0.0f32; 72 * 54];
         for point in points {
             let mut hard = scene.clone();
-            let crate::light::HardLight::Point(position) = point else {
+            let crate::world::light::HardLight::Point(position) = point else {
                 panic!("a square has points");
             };
             hard.lights[0].shape = LightShape::Point { position };

@@ -1,20 +1,20 @@
 //! The penumbra wedges that a technique builds for a scene, to be looked at: the
 //! same casters, silhouettes and constructions as in its frame, without drawing.
 
-use super::casters;
-use super::passes::{self, View};
-use super::penumbra::EXTRA_WEDGES;
-use super::penumbra::light::LightSphere;
-use super::penumbra::report::Met;
-use super::soft::edges::Casters;
-use super::soft::light::{SoftLight, split};
-use super::soft::wedges::construction;
 use super::soft_shadow_volumes::WEDGE;
 use super::soft_shadow_volumes_optimised::SPLIT;
-use crate::scene::Scene;
+use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge};
+use crate::geometry::wedge::{Construction, Wedge, WedgeMesh, WedgeStatistics};
+use crate::parts::casters;
+use crate::parts::passes::{self, View};
+use crate::parts::wedges::penumbra::EXTRA_WEDGES;
+use crate::parts::wedges::penumbra::light::LightSphere;
+use crate::parts::wedges::penumbra::report::Met;
+use crate::parts::wedges::soft::edges::Casters;
+use crate::parts::wedges::soft::light::{SoftLight, split};
+use crate::parts::wedges::soft::wedges::construction;
 use crate::technique::{Params, Technique, TechniqueError};
-use crate::wedge::paper1::{LinkedSettings, LinkedWedge};
-use crate::wedge::{Construction, Wedge, WedgeMesh, WedgeStatistics};
+use crate::world::scene::Scene;
 
 /// How a technique's wedges are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,8 +134,8 @@ fn single(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::builtin;
-    use crate::technique::{find, techniques};
+    use crate::techniques::{self, find};
+    use crate::world::scene::builtin;
 
     fn wedges(scene: &str, technique: &str, set: &[&str]) -> Option<SceneWedges> {
         let scene = builtin::build(scene).unwrap();
@@ -176,7 +176,7 @@ mod tests {
         }
         assert_eq!(wedges("cylinder", "shadow-volumes", &[]), None);
         assert!(
-            techniques()
+            techniques::all()
                 .iter()
                 .filter(|t| kind(**t, &Params::defaults(**t)).is_some())
                 .count()

@@ -1,12 +1,12 @@
-//! Shadow mapping: one look-up in a light view for each receiver (IMPLEMENTING
-//! §1.11). Hard shadows of the light's centre, with the resolution of the view.
+//! Shadow mapping: one look-up in a light view for each receiver (docs/papers.md,
+//! baselines). Hard shadows of the light's centre, with the resolution of the view.
 
 use gnomon_shaders::shadow_maps::BoxTaps;
 
-use super::mapped::{self, Mapped, Margin, Sources};
-use super::passes;
-use crate::scene::Scene;
+use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
+use crate::parts::passes;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct ShadowMap;

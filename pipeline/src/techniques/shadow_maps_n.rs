@@ -1,6 +1,6 @@
 //! The mean of N shadow maps, one from each of N points of the light: brute force,
 //! and the reference of image-based soft shadows (500 of them in Annen et al. 2008;
-//! IMPLEMENTING §1.11).
+//! docs/papers.md, baselines).
 //!
 //! Every map is rendered and looked up, so it costs N times a shadow map; what it
 //! errs by is the texels, the bias and the N steps of a penumbra. Where N is a
@@ -9,14 +9,14 @@
 use gnomon_raster::state::ColorTargetState;
 use gnomon_shaders::shadow_maps::BoxTaps;
 
-use super::horizon::HORIZON;
-use super::light_view::{LightExtent, ViewedLight};
-use super::mapped::{self, Mapped, Margin, Sources};
-use super::passes;
-use crate::light::HardLight;
-use crate::light_samples::light_points;
-use crate::scene::Scene;
+use crate::parts::horizon::HORIZON;
+use crate::parts::light_samples::light_points;
+use crate::parts::maps::light_view::{LightExtent, ViewedLight};
+use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
+use crate::parts::passes;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::world::light::HardLight;
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct ShadowMapsN;

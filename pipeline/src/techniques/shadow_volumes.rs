@@ -1,5 +1,5 @@
 //! Hard shadows by stencil volumes: z-pass, z-fail, or the cheaper one that is
-//! right, caster by caster (IMPLEMENTING §1.1).
+//! right, caster by caster (docs/papers.md, hard shadow volumes).
 //!
 //! Per light: count the volumes into the stencil, wrapping modulo 256, then add
 //! the light where the count is 0. Volumes reach to infinity. z-fail draws both
@@ -7,20 +7,20 @@
 //! caster's own triangles through the caster's own arithmetic, so it fails
 //! against the surface by equality. z-pass draws the sides where they pass; it
 //! miscounts where the view starts inside the volume, so `auto` takes it only
-//! where [`super::near_pyramid`] proves that it does not.
+//! where [`crate::parts::volumes::near_pyramid`] proves that it does not.
 //!
 //! Visibility is that of the first light asked for, which is drawn last, so
 //! that the final stencil is its own.
 
 use gnomon_raster::{Draw, LoadOp, RenderPass};
 
-use super::casters;
-use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::volume_draws::{self, Casters};
-use crate::scene::Scene;
+use crate::parts::casters;
+use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::volumes::volume_draws::{self, Casters};
 use crate::technique::{
     Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, VisibilityOutput,
 };
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct ShadowVolumes;

@@ -1,11 +1,11 @@
 //! The scene without shadows: ambient light, then every light added everywhere.
 
-use crate::scene::Scene;
 use crate::technique::{
     Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, VisibilityOutput,
 };
+use crate::world::scene::Scene;
 
-use super::passes::{self, LitTest, SceneDraws};
+use crate::parts::passes::{self, LitTest, SceneDraws};
 
 /// The registry's entry.
 pub(crate) struct Unshadowed;

@@ -2,14 +2,15 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use glam::DVec3;
-use gnomon_pipeline::light::{HardLight, Light};
-use gnomon_pipeline::mesh::Shading;
-use gnomon_pipeline::oracle::area::VisibilityImage;
-use gnomon_pipeline::oracle::plates::ParallelPlates;
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Camera, Material, Object, Scene, builtin};
-use gnomon_pipeline::shape;
-use gnomon_pipeline::technique::{Params, find};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::oracle::area::VisibilityImage;
+use gnomon_pipeline::world::light::{HardLight, Light};
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::plates::ParallelPlates;
+use gnomon_pipeline::world::scene::{Camera, Material, Object, Scene, builtin};
+use gnomon_pipeline::world::shape;
 
 pub(crate) const SIZE: [u32; 2] = [120, 80];
 
@@ -53,7 +54,7 @@ pub(crate) fn centre_of(scene: &Scene) -> DVec3 {
     centre
 }
 
-/// Plate and floor under a square light, as IMPLEMENTING §5 has them, the floor at
+/// Plate and floor under a square light, as docs/papers.md, scenes has them, the floor at
 /// distance `d` from the light.
 pub(crate) fn plates(d: f64) -> (Scene, ParallelPlates) {
     let plates = ParallelPlates {

@@ -2,10 +2,10 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 use glam::{DVec3, DVec4};
-use gnomon_pipeline::area_light::AreaLight;
-use gnomon_pipeline::light::LightShape;
-use gnomon_pipeline::wedge::WedgeMesh;
-use gnomon_pipeline::wedge::polyhedron::{End, Ends, Polyhedron};
+use gnomon_pipeline::geometry::area_light::AreaLight;
+use gnomon_pipeline::geometry::wedge::WedgeMesh;
+use gnomon_pipeline::geometry::wedge::polyhedron::{End, Ends, Polyhedron};
+use gnomon_pipeline::world::light::LightShape;
 
 /// SplitMix64: a fixed stream per seed.
 pub(crate) struct Random(pub(crate) u64);

@@ -259,7 +259,7 @@ impl DepthStencilState {
     }
 
     /// Shadow volumes counted where they pass the depth test: front faces +1,
-    /// back faces −1 (Heidmann; IMPLEMENTING §1.1).
+    /// back faces −1 (Heidmann; docs/papers.md, hard shadow volumes).
     #[must_use]
     pub fn z_pass_volumes() -> Self {
         let face = |op| StencilFaceState {
@@ -281,7 +281,7 @@ impl DepthStencilState {
     }
 
     /// Shadow volumes counted where they fail the depth test: back faces +1,
-    /// front faces −1 ("z-fail", Carmack's reverse; IMPLEMENTING §1.1).
+    /// front faces −1 ("z-fail", Carmack's reverse; docs/papers.md, hard shadow volumes).
     #[must_use]
     pub fn z_fail_volumes() -> Self {
         let face = |op| StencilFaceState {

@@ -1,4 +1,4 @@
-//! Convolution soft shadows (Annen et al. 2008; IMPLEMENTING §1.7): the shadow test
+//! Convolution soft shadows (Annen et al. 2008; docs/papers.md, Annen et al. 2008): the shadow test
 //! as a sum of products of receiver and blocker, so that it can be filtered before
 //! it is known who receives.
 //!

@@ -2,7 +2,7 @@
 //!
 //! The umbra's boundary is the front planes. Whether it lies between eye and
 //! surface is the sign of the *same* plane value that decides whether the surface
-//! is inside the wedge (IMPLEMENTING §1.3, hazards): a surface on the front plane
+//! is inside the wedge (docs/papers.md, paper II, hazards): a surface on the front plane
 //! can not be counted by one and missed by the other, whatever the rounding.
 //! Where depth is 1 nothing is added.
 

@@ -1,6 +1,6 @@
 //! Ranges, ticks and their labels.
 
-use gnomon_pipeline::chart::Scale;
+use gnomon_claims::chart::Scale;
 
 /// An axis with a range that holds all values.
 #[derive(Clone, Debug, PartialEq)]

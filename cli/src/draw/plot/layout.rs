@@ -1,6 +1,6 @@
 //! From a chart to lines, dots, bars and text in pixels.
 
-use gnomon_pipeline::chart::{Chart, Mark, Series};
+use gnomon_claims::chart::{Chart, Mark, Series};
 
 use super::axis::{Range, tick_label};
 use crate::draw::font;

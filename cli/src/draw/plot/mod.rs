@@ -1,7 +1,7 @@
 //! Plots, from one description to PNG and SVG: axes, linear or logarithmic, series,
 //! a legend.
 //!
-//! A [`gnomon_pipeline::chart::Chart`] is laid out once, into lines, dots, bars and
+//! A [`gnomon_claims::chart::Chart`] is laid out once, into lines, dots, bars and
 //! text in pixels ([`layout`]); [`raster`] and [`mod@svg`] only draw those. So both files
 //! show the same.
 
@@ -10,7 +10,7 @@ mod layout;
 mod raster;
 mod svg;
 
-use gnomon_pipeline::chart::Chart;
+use gnomon_claims::chart::Chart;
 
 use super::Picture;
 

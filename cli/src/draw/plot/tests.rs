@@ -1,4 +1,4 @@
-use gnomon_pipeline::chart::{Axis, Chart, Mark, Series};
+use gnomon_claims::chart::{Axis, Chart, Mark, Series};
 
 use super::{picture, svg};
 

@@ -1,7 +1,7 @@
 //! The JSON document; `docs/json.md` describes it. Keys are only ever added.
 
-use gnomon_pipeline::metrics::visibility::ErrorSummary;
-use gnomon_pipeline::oracle::area::LightRegion;
+use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
+use gnomon_pipeline::truth::oracle::area::LightRegion;
 use serde::Serialize;
 
 use super::job::{Entry, Job};

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use gnomon_pipeline::comparison::{CompareError, ReferenceKind};
-use gnomon_pipeline::oracle::cache::OracleCache;
-use gnomon_pipeline::render::RenderSettings;
-use gnomon_pipeline::scene::{Scene, SceneSource};
-use gnomon_pipeline::technique::{Params, Technique, find};
+use gnomon_pipeline::measure::comparison::{CompareError, ReferenceKind};
+use gnomon_pipeline::measure::render::RenderSettings;
+use gnomon_pipeline::technique::{Params, Technique};
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::oracle::cache::OracleCache;
+use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
 use crate::args::{CompareArgs, EntryArg};
 use crate::error::CliError;

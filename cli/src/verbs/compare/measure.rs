@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use gnomon_pipeline::comparison::{Aligned, Origin, Reference, Score, ShadingKey, shaded};
-use gnomon_pipeline::render::{Rendered, render};
+use gnomon_pipeline::measure::comparison::{Aligned, Origin, Reference, Score, ShadingKey, shaded};
+use gnomon_pipeline::measure::render::{Rendered, render};
 
 use super::job::{Entry, Job};
 use crate::error::CliError;

@@ -50,7 +50,7 @@ fn technique(measured: &Measured) -> Cell {
     let Measured {
         label, done, under, ..
     } = measured;
-    let figure = |f: fn(gnomon_pipeline::metrics::visibility::ErrorSummary) -> f64| {
+    let figure = |f: fn(gnomon_pipeline::truth::metrics::visibility::ErrorSummary) -> f64| {
         measured
             .score
             .visibility

@@ -1,9 +1,9 @@
 //! The table: a column for each technique, so that it fits a terminal whatever
 //! they are called; a row for each figure.
 
-use gnomon_pipeline::metrics::visibility::ErrorSummary;
-use gnomon_pipeline::oracle::area::LightRegion;
-use gnomon_pipeline::wedge_work::WedgeWork;
+use gnomon_pipeline::measure::wedge_work::WedgeWork;
+use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
+use gnomon_pipeline::truth::oracle::area::LightRegion;
 
 use super::measure::Measured;
 use crate::output::numbers::{self, count, error};

@@ -1,10 +1,10 @@
 //! How far the demo's pictures are from the exact soft shadow.
 
-use gnomon_pipeline::comparison::{Reference, ReferenceKind, Score, shaded};
-use gnomon_pipeline::metrics::visibility::ErrorSummary;
-use gnomon_pipeline::oracle::area::LightRegion;
-use gnomon_pipeline::render::RenderSettings;
-use gnomon_pipeline::scene::Scene;
+use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind, Score, shaded};
+use gnomon_pipeline::measure::render::RenderSettings;
+use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
+use gnomon_pipeline::truth::oracle::area::LightRegion;
+use gnomon_pipeline::world::scene::Scene;
 use serde::Serialize;
 
 use super::shots::{Shot, same_bits};
@@ -117,7 +117,7 @@ mod tests {
     /// Its pictures have all lights, the truth has one.
     #[test]
     fn the_demo_has_one_light() {
-        let scene = gnomon_pipeline::scene::builtin::build(super::super::SCENE).unwrap();
+        let scene = gnomon_pipeline::world::scene::builtin::build(super::super::SCENE).unwrap();
         assert_eq!(scene.lights.len(), 1);
     }
 }

@@ -1,8 +1,9 @@
 //! The frames of the demo: which, and how they are rendered.
 
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::Scene;
-use gnomon_pipeline::technique::{Params, Technique, find};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::{Params, Technique};
+use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::world::scene::Scene;
 
 use crate::args::DemoArgs;
 use crate::error::CliError;

@@ -6,8 +6,8 @@
 
 use std::path::{Path, PathBuf};
 
-use gnomon_pipeline::render::{Rendered, render};
-use gnomon_pipeline::technique::find;
+use gnomon_pipeline::measure::render::{Rendered, render};
+use gnomon_pipeline::techniques::find;
 use serde::Serialize;
 
 use super::{Job, default_out, source, write};

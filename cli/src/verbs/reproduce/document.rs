@@ -1,6 +1,6 @@
 //! The JSON document; `docs/json.md` describes it. Keys are only ever added.
 
-use gnomon_pipeline::reproduce::{Finding, LabSettings, Measure, Unit};
+use gnomon_claims::{Finding, LabSettings, Measure, Unit};
 use serde::Serialize;
 
 use super::{Outcome, text};

@@ -6,9 +6,9 @@ mod text;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use gnomon_pipeline::chart::Chart;
-use gnomon_pipeline::oracle::cache::OracleCache;
-use gnomon_pipeline::reproduce::{Claim, Finding, Lab, LabSettings, claims, find};
+use gnomon_claims::chart::Chart;
+use gnomon_claims::{Claim, Finding, Lab, LabSettings, claims, find};
+use gnomon_pipeline::truth::oracle::cache::OracleCache;
 
 use crate::args::ReproduceArgs;
 use crate::draw::plot;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use gnomon_pipeline::reproduce::{Finding, Judgement, LabSettings, Measure, Theirs, Unit, Verdict};
+use gnomon_claims::{Finding, Judgement, LabSettings, Measure, Theirs, Unit, Verdict};
 
 use super::Outcome;
 use crate::output::json::worker_threads;

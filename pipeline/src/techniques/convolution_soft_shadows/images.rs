@@ -5,7 +5,7 @@ use gnomon_shaders::convolution::look_up::Images;
 use gnomon_shaders::convolution::{Atlas, Encoding};
 
 use super::settings::{Filter, MAP_SIZE, Settings};
-use crate::convolution::FixedPoint;
+use crate::geometry::convolution::FixedPoint;
 use crate::technique::{TechniqueError, TextureSource};
 
 /// Textures of one size that are treated together, tile by tile.

@@ -1,4 +1,4 @@
-//! Convolution soft shadows (Annen et al. 2008; IMPLEMENTING §1.7).
+//! Convolution soft shadows (Annen et al. 2008; docs/papers.md, Annen et al. 2008).
 //!
 //! Per light and view of it: the light view's depth becomes basis images (CSM, CSM-Z
 //! and depth), these are prefiltered, and each receiver that the camera sees takes
@@ -12,7 +12,7 @@
 //!
 //! # Departures from the paper, and why
 //!
-//! * Constants of the ringing suppression are derived ([`crate::convolution`]).
+//! * Constants of the ringing suppression are derived ([`crate::geometry::convolution`]).
 //! * What a kernel covers beyond the light view's border is empty: views are fitted so
 //!   that no caster in the way is outside.
 //! * All terms' images of a kind are tiles of one texture, so that any order fits the
@@ -44,17 +44,19 @@ use self::images::{BasisTextures, filtered};
 use self::needed::Needed;
 use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
-use super::horizon::{HORIZON, Horizon};
-use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
-use super::lit_tiles::{FurtherLights, LitTiles};
-use super::mapped::{self, Notes, Said};
-use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
-use crate::light::{Light, LightShape};
-use crate::scene::Scene;
+use crate::parts::horizon::{HORIZON, Horizon};
+use crate::parts::maps::light_view::{
+    CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of,
+};
+use crate::parts::maps::lit_tiles::{FurtherLights, LitTiles};
+use crate::parts::maps::mapped::{self, Notes, Said};
+use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
 use crate::technique::{
     Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
 };
+use crate::world::light::{Light, LightShape};
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct ConvolutionSoftShadows;

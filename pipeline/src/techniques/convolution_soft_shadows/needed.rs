@@ -2,7 +2,7 @@
 //! that the camera sees, and so is known before anything is drawn.
 
 use super::settings::Filter;
-use crate::techniques::light_view::Reads;
+use crate::parts::maps::light_view::Reads;
 
 /// Texels from `begin` to before `end`, of a tile of `side` texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,10 +14,10 @@ use gnomon_shaders::convolution::basis::{BasisImages, DepthImage, Source};
 use gnomon_shaders::convolution::prefilter::{CopyLevel, Halve, LessMean, SumStep};
 use gnomon_shaders::transform::FullScreen;
 
-use super::super::visibility::{binding, full_screen};
 use super::images::{BasisTextures, Group};
 use super::needed::{Needed, Texels};
 use super::settings::{Filter, Settings};
+use crate::parts::visibility::{binding, full_screen};
 
 /// Passes that leave all prefiltered images of one view behind, and the textures
 /// that hold them: CSM, CSM-Z, depth.

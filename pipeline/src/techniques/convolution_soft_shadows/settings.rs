@@ -1,8 +1,8 @@
 //! The technique's parameters.
 
-use super::super::light_view::{Fitting, Views};
-use super::super::mapped::MapParams;
-use crate::convolution::{Series, Suppression};
+use crate::geometry::convolution::{Series, Suppression};
+use crate::parts::maps::light_view::{Fitting, Views};
+use crate::parts::maps::mapped::MapParams;
 use crate::technique::{ParamInfo, Params, TechniqueError};
 
 pub(super) const TERMS: ParamInfo = ParamInfo {

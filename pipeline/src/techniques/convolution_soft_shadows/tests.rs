@@ -4,12 +4,12 @@
 use glam::DVec3;
 use gnomon_raster::{Gpu, GpuConfig, Subresource, TextureDescriptor, TextureId};
 
-use super::super::light_view::{FitTo, Fitting, Views};
 use super::*;
-use crate::convolution::{Series, Suppression};
-use crate::scene::builtin;
-use crate::scene::builtin::PLATES;
-use crate::technique::find;
+use crate::geometry::convolution::{Series, Suppression};
+use crate::parts::maps::light_view::{FitTo, Fitting, Views};
+use crate::techniques::find;
+use crate::world::scene::builtin;
+use crate::world::scene::builtin::PLATES;
 
 const PICTURE: [u32; 2] = [96, 64];
 
@@ -203,7 +203,7 @@ fn an_exact_step_is_the_closed_form_to_a_texel() {
         let ran = Remembering::run(&scene, &[&set]);
         let twin = Twin::new(&scene, &ran, Test::Exact);
         let texel = twin.texel(PLATES.plate_distance);
-        let plate = |by: f64| crate::oracle::plates::ParallelPlates {
+        let plate = |by: f64| crate::world::plates::ParallelPlates {
             plate_half: PLATES.plate_half + by,
             ..PLATES
         };

@@ -14,17 +14,17 @@ use gnomon_shaders::transform::HomogeneousPoints;
 
 use super::list::{LightDraws, Shaded};
 use super::{Builder, Parts};
+use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge};
+use crate::parts::casters::Examined;
+use crate::parts::passes;
+use crate::parts::visibility::binding;
+use crate::parts::wedges::penumbra::hard::{self, Method};
+use crate::parts::wedges::penumbra::light::LightSphere;
+use crate::parts::wedges::penumbra::report::Met;
+use crate::parts::wedges::penumbra::shape::{self, Faces, WedgeShape};
+use crate::parts::wedges::penumbra::volume::SoftVolume;
+use crate::parts::wedges::penumbra::{EXTRA_WEDGES, axes, screen};
 use crate::technique::CasterUse;
-use crate::techniques::casters::Examined;
-use crate::techniques::passes;
-use crate::techniques::penumbra::hard::{self, Method};
-use crate::techniques::penumbra::light::LightSphere;
-use crate::techniques::penumbra::report::Met;
-use crate::techniques::penumbra::shape::{self, Faces, WedgeShape};
-use crate::techniques::penumbra::volume::SoftVolume;
-use crate::techniques::penumbra::{EXTRA_WEDGES, axes, screen};
-use crate::techniques::visibility::binding;
-use crate::wedge::paper1::{LinkedSettings, LinkedWedge};
 
 impl Builder<'_> {
     pub(super) fn hard_light(&self, light: usize, draws: &mut LightDraws, parts: &mut Parts) {

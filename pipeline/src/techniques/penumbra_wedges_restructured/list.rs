@@ -11,11 +11,11 @@ use gnomon_shaders::penumbra::inside::{Culling, WedgeInside};
 use gnomon_shaders::transform::FullScreen;
 
 use super::{Builder, Choices, PASSES, Parts, WedgeDraw};
+use crate::parts::passes::Targets;
+use crate::parts::visibility::{attachment, binding, full_screen};
+use crate::parts::wedges::penumbra;
+use crate::parts::wedges::penumbra::light::{self, LightSphere};
 use crate::technique::{Params, TechniqueError, TextureSource};
-use crate::techniques::passes::Targets;
-use crate::techniques::penumbra;
-use crate::techniques::penumbra::light::{self, LightSphere};
-use crate::techniques::visibility::{attachment, binding, full_screen};
 
 /// A draw with the wedge shader that it runs, if it does.
 pub(super) type Shaded = (Draw, Option<WedgeInside>);

@@ -32,7 +32,7 @@
 //! (texture 0), the reads and writes of the buffer and of the stencil that are
 //! counted are those of hardware that culls tiles of that size. Only the reads of
 //! zmin and zmax differ: here each fragment reads them (textures 1 and 2),
-//! hardware once per triangle and tile; [`crate::tile_traffic`] counts these.
+//! hardware once per triangle and tile; [`crate::measure::tile_traffic`] counts these.
 //! Culling changes no bit of any buffer.
 //!
 //! Pixels without surface (depth 1) belong to no umbra and no wedge and are left
@@ -53,15 +53,15 @@ use gnomon_raster::TextureId;
 use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, TileTest, WedgeInside};
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
-use super::casters::{self, Examined, OPEN_CASTERS};
-use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::penumbra::hard::Method;
-use super::penumbra::screen::Screen;
-use super::penumbra::{self, EXTRA_WEDGES, INTERPOLATION};
-use crate::scene::Scene;
+use crate::parts::casters::{self, Examined, OPEN_CASTERS};
+use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::wedges::penumbra::hard::Method;
+use crate::parts::wedges::penumbra::screen::Screen;
+use crate::parts::wedges::penumbra::{self, EXTRA_WEDGES, INTERPOLATION};
 use crate::technique::{
     CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
 };
+use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct PenumbraWedgesRestructured;

@@ -6,9 +6,9 @@ use gnomon_shaders::soft_volumes::Resolve;
 use gnomon_shaders::transform::FullScreen;
 
 use super::{BUFFER, COPY_BACK};
+use crate::parts::visibility::{VisibilityTexture, attachment, binding, full_screen};
+use crate::parts::wedges::soft::covering::light_image;
 use crate::technique::{Params, TechniqueError, TextureSource};
-use crate::techniques::soft::covering::light_image;
-use crate::techniques::visibility::{VisibilityTexture, attachment, binding, full_screen};
 
 /// Textures that coverage is added up in.
 pub(super) struct Buffers {

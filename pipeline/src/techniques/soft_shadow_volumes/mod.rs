@@ -1,5 +1,4 @@
-//! Soft shadow volumes (Assarsson and Akenine-Möller, paper III; IMPLEMENTING
-//! §0.1 and §1.4).
+//! Soft shadow volumes (Assarsson and Akenine-Möller, paper III; docs/papers.md, paper III).
 //!
 //! Per light: the visibility buffer starts at 1; hard shadow quads take 1 where
 //! the light's centre is hidden; then each silhouette edge's penumbra wedge adds
@@ -21,18 +20,18 @@
 mod buffers;
 mod volumes;
 
-use super::casters::{OPEN_CASTERS, SKIP};
-use super::horizon::{HORIZON, Horizon};
-use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::soft::covering::{
+use crate::parts::casters::{OPEN_CASTERS, SKIP};
+use crate::parts::horizon::{HORIZON, Horizon};
+use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::visibility::Positions;
+use crate::parts::wedges::soft::covering::{
     BACKEND, Coverings, LIGHT_FRAME, LIGHT_IMAGE, TEXTURE_CENTRED, TEXTURE_FILTER, TEXTURE_SIZE,
     light_image,
 };
-use super::soft::edges::Casters;
-use super::soft::light::SoftLight;
-use super::visibility::Positions;
-use crate::scene::Scene;
+use crate::parts::wedges::soft::edges::Casters;
+use crate::parts::wedges::soft::light::SoftLight;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::world::scene::Scene;
 use buffers::Buffers;
 use volumes::Volumes;
 

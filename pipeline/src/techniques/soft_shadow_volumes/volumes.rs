@@ -6,19 +6,19 @@ use gnomon_raster::{Draw, LoadOp, RenderPass, TextureBinding, TextureId};
 use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
 
 use super::buffers::Buffers;
-use crate::technique::{Params, Warning};
-use crate::techniques::casters::SKIP;
-use crate::techniques::passes::{Targets, View};
-use crate::techniques::soft::count::Counting;
-use crate::techniques::soft::covering::Covering;
-use crate::techniques::soft::edges::Silhouettes;
-use crate::techniques::soft::light::SoftLight;
-use crate::techniques::soft::wedges::{
+use crate::geometry::wedge::{Wedge, WedgeStatistics};
+use crate::parts::casters::SKIP;
+use crate::parts::passes::{Targets, View};
+use crate::parts::visibility::{Positions, attachment, binding};
+use crate::parts::wedges::COVERAGE_DRAW;
+use crate::parts::wedges::soft::count::Counting;
+use crate::parts::wedges::soft::covering::Covering;
+use crate::parts::wedges::soft::edges::Silhouettes;
+use crate::parts::wedges::soft::light::SoftLight;
+use crate::parts::wedges::soft::wedges::{
     AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
 };
-use crate::techniques::visibility::{Positions, attachment, binding};
-use crate::wedge::{Wedge, WedgeStatistics};
-use crate::wedge_work::COVERAGE_DRAW;
+use crate::technique::{Params, Warning};
 
 /// Quads and wedges of one light.
 pub(super) struct Volumes<'a> {

@@ -7,8 +7,8 @@ use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescripto
 use gnomon_shaders::split_volumes::{AddVisibility, CombineGroups};
 use gnomon_shaders::transform::FullScreen;
 
+use crate::parts::visibility::{VisibilityTexture, attachment, binding, full_screen};
 use crate::technique::{TechniqueError, TextureSource};
-use crate::techniques::visibility::{VisibilityTexture, attachment, binding, full_screen};
 
 /// Textures that coverage is added up in.
 pub(super) struct Buffers {

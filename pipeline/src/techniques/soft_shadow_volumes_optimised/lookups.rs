@@ -5,9 +5,9 @@ use gnomon_shaders::coverage::Image;
 use gnomon_shaders::split_volumes::Tables;
 
 use super::{COVERAGE, SPLIT_BITS};
+use crate::parts::wedges::soft::light::SoftLight;
+use crate::parts::wedges::soft::split_tables;
 use crate::technique::{Params, TechniqueError, TextureSource};
-use crate::techniques::soft::light::SoftLight;
-use crate::techniques::soft::split_tables;
 
 /// Look-up textures of the lights of a frame, one set for each shape.
 #[derive(Default)]

@@ -1,4 +1,4 @@
-//! Soft shadow volumes, optimised (paper IV; IMPLEMENTING §1.5): tight wedges, a
+//! Soft shadow volumes, optimised (paper IV; docs/papers.md, paper IV): tight wedges, a
 //! shader that computes coverage or looks it up, 12 bits of coverage split over
 //! 8-bit buffers, silhouettes combined, and lights split.
 //!
@@ -23,16 +23,16 @@ mod volumes;
 
 use gnomon_shaders::split_volumes::{AddVisibility, Combination};
 
-use super::casters::{OPEN_CASTERS, SKIP};
-use super::horizon::{HORIZON, Horizon};
-use super::passes::{self, LitTest, SceneDraws, Targets};
-use super::soft::edges::Casters;
-use super::soft::light::{SoftLight, split};
-use super::soft::wedges::warnings_of;
 use super::soft_shadow_volumes::SPHERE;
-use super::visibility::Positions;
-use crate::scene::Scene;
+use crate::parts::casters::{OPEN_CASTERS, SKIP};
+use crate::parts::horizon::{HORIZON, Horizon};
+use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::visibility::Positions;
+use crate::parts::wedges::soft::edges::Casters;
+use crate::parts::wedges::soft::light::{SoftLight, split};
+use crate::parts::wedges::soft::wedges::warnings_of;
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::world::scene::Scene;
 use buffers::Buffers;
 use lookups::Lookups;
 use volumes::{Met, Volumes};

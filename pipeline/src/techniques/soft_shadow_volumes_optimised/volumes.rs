@@ -7,19 +7,19 @@ use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
 
 use super::HALVES;
 use super::buffers::Buffers;
-use crate::technique::Params;
-use crate::techniques::casters::SKIP;
-use crate::techniques::passes::{Targets, View};
-use crate::techniques::soft::count::Counting;
-use crate::techniques::soft::edges::Silhouettes;
-use crate::techniques::soft::halves::Half;
-use crate::techniques::soft::light::{LightSide, SoftLight};
-use crate::techniques::soft::wedges::{
+use crate::geometry::wedge::{Wedge, WedgeStatistics};
+use crate::parts::casters::SKIP;
+use crate::parts::passes::{Targets, View};
+use crate::parts::visibility::{Positions, attachment, binding};
+use crate::parts::wedges::COVERAGE_DRAW;
+use crate::parts::wedges::soft::count::Counting;
+use crate::parts::wedges::soft::edges::Silhouettes;
+use crate::parts::wedges::soft::halves::Half;
+use crate::parts::wedges::soft::light::{LightSide, SoftLight};
+use crate::parts::wedges::soft::wedges::{
     AreaStatistics, Note, WedgeArea, WedgePipeline, construction,
 };
-use crate::techniques::visibility::{Positions, attachment, binding};
-use crate::wedge::{Wedge, WedgeStatistics};
-use crate::wedge_work::COVERAGE_DRAW;
+use crate::technique::Params;
 
 /// What wedges of all parts of a light met.
 #[derive(Default)]

@@ -7,11 +7,12 @@ mod picture;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gnomon_pipeline::comparison::{Directions, EnvironmentReference, RadianceScore};
-use gnomon_pipeline::environment::cube::luminance;
-use gnomon_pipeline::environment::{EnvironmentRequest, PlacedEnvironment};
-use gnomon_pipeline::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::scene::{Scene, SceneSource};
+use gnomon_pipeline::measure::comparison::{Directions, EnvironmentReference, RadianceScore};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::world::environment::PlacedEnvironment;
+use gnomon_pipeline::world::environment::cube::luminance;
+use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
+use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
 use super::job::{self, DEFAULT_SIZE, Entry};
 use crate::args::CompareArgs;

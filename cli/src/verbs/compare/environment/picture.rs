@@ -1,7 +1,7 @@
 //! The picture: the reference and each technique; below each technique its signed
 //! error of luminance.
 
-use gnomon_pipeline::comparison::EnvironmentReference;
+use gnomon_pipeline::measure::comparison::EnvironmentReference;
 
 use super::Measured;
 use crate::draw::diverging::{self, diverging, place};

@@ -1,0 +1,13 @@
+//! Shadow geometry in f64, from meshes and lights alone: silhouettes, volumes,
+//! wedges, what is seen of a light past an edge, and the Fourier expansion of
+//! convolution shadow maps.
+
+pub mod area_light;
+pub mod caster;
+pub mod convolution;
+pub mod coverage;
+pub mod silhouette;
+pub mod silhouette_loops;
+pub mod volume;
+pub mod wedge;
+pub mod winding;

@@ -1,0 +1,154 @@
+//! Where the work went: fragments per pixel and bytes per 8×8 block, pass by
+//! pass, for overlays. Rendered by [`record`] with an access observer; slower
+//! than [`crate::measure::render::render`], and the same bits.
+
+use gnomon_raster::{AccessObserver, BlockAccess, Format, Gpu};
+
+use crate::measure::render::{RenderError, RenderSettings};
+use crate::technique::{Frame, Params, Technique};
+use crate::world::scene::Scene;
+
+/// Bytes of one 8×8 block by client, reads and writes together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BlockBytes {
+    /// Depth.
+    pub z: u64,
+    /// Stencil.
+    pub stencil: u64,
+    /// Colour attachment 0.
+    pub color: u64,
+    /// zmin/zmax entries.
+    pub hiz: u64,
+}
+
+impl BlockBytes {
+    /// All clients.
+    pub fn total(&self) -> u64 {
+        self.z + self.stencil + self.color + self.hiz
+    }
+
+    fn add(&mut self, o: &Self) {
+        self.z += o.z;
+        self.stencil += o.stencil;
+        self.color += o.color;
+        self.hiz += o.hiz;
+    }
+}
+
+/// The work of one pass, or of several. Clears are left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PassHeat {
+    /// The pass's label.
+    pub label: String,
+    /// Fragments generated at each pixel, rows from the top.
+    pub overdraw: Vec<u32>,
+    /// Bytes of each block, rows from the top.
+    pub bytes: Vec<BlockBytes>,
+}
+
+/// The work of a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Heat {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Blocks across and down.
+    pub blocks: [u32; 2],
+    /// Pass by pass.
+    pub passes: Vec<PassHeat>,
+}
+
+impl Heat {
+    /// Sum over the passes that `wanted` picks by label.
+    pub fn sum(&self, wanted: impl Fn(&str) -> bool) -> PassHeat {
+        let mut sum = PassHeat::new("sum", self.size, self.blocks);
+        for pass in self.passes.iter().filter(|p| wanted(&p.label)) {
+            sum.overdraw
+                .iter_mut()
+                .zip(&pass.overdraw)
+                .for_each(|(a, b)| *a += b);
+            sum.bytes
+                .iter_mut()
+                .zip(&pass.bytes)
+                .for_each(|(a, b)| a.add(b));
+        }
+        sum
+    }
+}
+
+impl PassHeat {
+    fn new(label: &str, [width, height]: [u32; 2], [across, down]: [u32; 2]) -> Self {
+        Self {
+            label: label.to_owned(),
+            overdraw: vec![0; width as usize * height as usize],
+            bytes: vec![BlockBytes::default(); across as usize * down as usize],
+        }
+    }
+}
+
+/// Renders one frame and records where its work went.
+///
+/// # Errors
+/// As [`crate::measure::render::render`].
+pub fn record(
+    scene: &Scene,
+    technique: &dyn Technique,
+    params: &Params,
+    settings: &RenderSettings,
+) -> Result<Heat, RenderError> {
+    let mut gpu = Gpu::new(settings.gpu)?;
+    let frame = technique.frame(scene, settings.size, params, &mut gpu)?;
+    let mut recorder = Recorder::new(&gpu, &frame, settings.size)?;
+    gpu.submit_observed(&frame.list, &mut recorder)?;
+    Ok(recorder.heat)
+}
+
+/// Adds up accesses; what each of them costs in bytes.
+struct Recorder {
+    heat: Heat,
+    depth_bytes: u64,
+    color_bytes: u64,
+}
+
+impl Recorder {
+    fn new(gpu: &Gpu, frame: &Frame, size: [u32; 2]) -> Result<Self, RenderError> {
+        let format = |id| Ok::<Format, RenderError>(gpu.texture(id)?.descriptor().format);
+        Ok(Self {
+            heat: Heat {
+                size,
+                blocks: size.map(|s| s.div_ceil(8)),
+                passes: Vec::new(),
+            },
+            depth_bytes: format(frame.outputs.depth_stencil)?.bytes(),
+            color_bytes: format(frame.outputs.color)?.bytes(),
+        })
+    }
+
+    fn bytes(&self, a: &BlockAccess) -> BlockBytes {
+        let accesses = |read: u64, write: u64| u64::from(read.count_ones() + write.count_ones());
+        BlockBytes {
+            z: accesses(a.z_read, a.z_write) * self.depth_bytes,
+            stencil: accesses(a.stencil_read, a.stencil_write),
+            color: accesses(a.color_read[0], a.color_write[0]) * self.color_bytes,
+            hiz: 8 * (u64::from(a.hiz_read) + u64::from(a.hiz_write)),
+        }
+    }
+}
+
+impl AccessObserver for Recorder {
+    fn render_pass(&mut self, _: usize, label: &str, accesses: &[BlockAccess]) {
+        let (size, blocks) = (self.heat.size, self.heat.blocks);
+        let mut pass = PassHeat::new(label, size, blocks);
+        for access in accesses {
+            let [column, row] = access.block.map(u32::from);
+            pass.bytes[(row * blocks[0] + column) as usize].add(&self.bytes(access));
+            let mut left = access.covered;
+            while left != 0 {
+                let bit = left.trailing_zeros();
+                let (x, y) = (8 * column + bit % 8, 8 * row + bit / 8);
+                pass.overdraw[(y * size[0] + x) as usize] += 1;
+                left &= left - 1;
+            }
+        }
+        self.heat.passes.push(pass);
+    }
+}

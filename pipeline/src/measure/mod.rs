@@ -1,0 +1,7 @@
+//! Frames are run here, timed and read back; their traffic and errors are found.
+
+pub mod comparison;
+pub mod heat;
+pub mod render;
+pub mod tile_traffic;
+pub mod wedge_work;

@@ -1,0 +1,345 @@
+//! The driver: runs a technique's frame on an emulated GPU, times it, and reads
+//! the results back as pictures.
+
+use std::time::Instant;
+
+use gnomon_raster::texture::ColorTexel;
+use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource};
+use thiserror::Error;
+
+use crate::technique::{
+    CasterUse, Figure, Frame, Params, Technique, TechniqueError, VisibilityOutput, Warning,
+};
+use crate::world::scene::Scene;
+
+/// How to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderSettings {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// How the emulated GPU executes.
+    pub gpu: GpuConfig,
+    /// Frames that are timed; above 1 another one warms up first. 0 counts as 1.
+    pub repeat: u32,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            size: [960, 540],
+            gpu: GpuConfig::default(),
+            repeat: 1,
+        }
+    }
+}
+
+/// A rendered frame.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The picture, sRGB-encoded, rows from the top.
+    pub srgb: Vec<[u8; 4]>,
+    /// The same in linear light, before it is limited to 0..=1.
+    pub color: Vec<[f32; 3]>,
+    /// Light's visibility, rows from the top: 1 fully lit, 0 in shadow, NaN
+    /// where no surface is seen. With several lights that of the first one.
+    pub visibility: Vec<f32>,
+    /// Depth in 0..=1, 1 where no surface is seen; rows from the top.
+    pub depth: Vec<f32>,
+    /// What the technique left in the stencil; rows from the top.
+    pub stencil: Vec<u8>,
+    /// Counters; the same for every one of the repeated frames.
+    pub report: SubmitReport,
+    /// Median time of a frame in milliseconds; loading, silhouettes and volumes
+    /// left out.
+    pub frame_ms: f64,
+    /// Median time of every pass, in order.
+    pub pass_ms: Vec<(String, f64)>,
+    /// The scene's and the technique's warnings, and the counters' events.
+    pub warnings: Vec<Warning>,
+    /// What became of each caster.
+    pub casters: Vec<CasterUse>,
+    /// Numbers that the technique chose for the scene, and what its shaders counted.
+    pub figures: Vec<Figure>,
+}
+
+impl Rendered {
+    /// Content hash of the picture: size and sRGB bytes, as 64 hex digits.
+    pub fn color_hash(&self) -> String {
+        hash(self.size, self.srgb.iter().flatten().copied())
+    }
+
+    /// Content hash of the visibility: size and float bits, as 64 hex digits.
+    pub fn visibility_hash(&self) -> String {
+        hash(
+            self.size,
+            self.visibility
+                .iter()
+                .flat_map(|v| v.to_bits().to_le_bytes()),
+        )
+    }
+}
+
+/// BLAKE3 of `size` (two little-endian `u32`) and `bytes`, as 64 hex digits:
+/// stable across machines and file formats.
+pub fn hash(size: [u32; 2], bytes: impl IntoIterator<Item = u8>) -> String {
+    let mut hasher = blake3::Hasher::new();
+    size.iter().for_each(|s| {
+        hasher.update(&s.to_le_bytes());
+    });
+    hasher.update(&bytes.into_iter().collect::<Vec<u8>>());
+    hasher.finalize().to_hex().to_string()
+}
+
+/// Why nothing was rendered.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum RenderError {
+    /// The technique gives no frame.
+    #[error(transparent)]
+    Technique(#[from] TechniqueError),
+    /// The GPU refuses its settings or the frame.
+    #[error(transparent)]
+    Gpu(#[from] gnomon_raster::Error),
+}
+
+/// Renders `scene` with `technique`.
+///
+/// # Errors
+/// The technique refuses the scene, or the GPU its settings.
+pub fn render(
+    scene: &Scene,
+    technique: &dyn Technique,
+    params: &Params,
+    settings: &RenderSettings,
+) -> Result<Rendered, RenderError> {
+    let mut gpu = Gpu::new(settings.gpu)?;
+    let frame = technique.frame(scene, settings.size, params, &mut gpu)?;
+    let times = Times::measure(&mut gpu, &frame, settings.repeat)?;
+    read_back(&gpu, scene, frame, settings.size, times)
+}
+
+/// Times of repeated frames and the counters of the last.
+struct Times {
+    report: SubmitReport,
+    frames: Vec<f64>,
+    passes: Vec<Vec<f64>>,
+}
+
+impl Times {
+    fn measure(gpu: &mut Gpu, frame: &Frame, repeat: u32) -> Result<Self, RenderError> {
+        if repeat > 1 {
+            gpu.submit(&frame.list)?;
+        }
+        let mut times = Self {
+            report: SubmitReport::default(),
+            frames: Vec::new(),
+            passes: vec![Vec::new(); frame.list.passes.len()],
+        };
+        for _ in 0..repeat.max(1) {
+            let start = Instant::now();
+            let report = gpu.submit(&frame.list)?;
+            times.frames.push(start.elapsed().as_secs_f64() * 1e3);
+            for (all, pass) in times.passes.iter_mut().zip(&report.passes) {
+                all.push(pass.time.as_secs_f64() * 1e3);
+            }
+            times.report = report;
+        }
+        Ok(times)
+    }
+}
+
+fn read_back(
+    gpu: &Gpu,
+    scene: &Scene,
+    frame: Frame,
+    size: [u32; 2],
+    times: Times,
+) -> Result<Rendered, RenderError> {
+    let image = Subresource::default();
+    let color = gpu.texture(frame.outputs.color)?.read_color(image)?;
+    let depth = gpu
+        .texture(frame.outputs.depth_stencil)?
+        .read_depth(image)?;
+    let stencil = gpu
+        .texture(frame.outputs.depth_stencil)?
+        .read_stencil(image)?;
+    let encoder = SrgbEncoder::new();
+    let labels = times.report.passes.iter().map(|p| p.label.clone());
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(frame.warnings);
+    warnings.extend(event_warnings(&times.report));
+    let counted = times.report.shader_counts().into_iter();
+    let counted = counted.map(|(name, n)| Figure {
+        name: name.to_owned(),
+        value: n as f64,
+    });
+    Ok(Rendered {
+        size,
+        srgb: color.iter().map(|t| encoder.encode(t.0)).collect(),
+        color: color.iter().map(|t| [t.0[0], t.0[1], t.0[2]]).collect(),
+        visibility: visibility(gpu, frame.outputs.visibility, &depth, &stencil)?,
+        depth,
+        stencil,
+        frame_ms: median(times.frames),
+        pass_ms: labels.zip(times.passes.into_iter().map(median)).collect(),
+        report: times.report,
+        warnings,
+        casters: frame.casters,
+        figures: frame.figures.into_iter().chain(counted).collect(),
+    })
+}
+
+fn visibility(
+    gpu: &Gpu,
+    output: VisibilityOutput,
+    depth: &[f32],
+    stencil: &[u8],
+) -> Result<Vec<f32>, RenderError> {
+    let values: Vec<f32> = match output {
+        VisibilityOutput::Full => vec![1.0; depth.len()],
+        VisibilityOutput::StencilZero => {
+            let lit = |s: &u8| if *s == 0 { 1.0 } else { 0.0 };
+            stencil.iter().map(lit).collect()
+        }
+        VisibilityOutput::Red {
+            texture,
+            scale,
+            offset,
+        } => {
+            let texels = gpu.texture(texture)?.read_color(Subresource::default())?;
+            let value = |t: &ColorTexel| (t.0[0] * scale + offset).clamp(0.0, 1.0);
+            texels.iter().map(value).collect()
+        }
+    };
+    let at = |(&depth, value)| if depth >= 1.0 { f32::NAN } else { value };
+    Ok(depth.iter().zip(values).map(at).collect())
+}
+
+/// Whether a pass of that label adds up coverage or counts instead of light.
+fn adds_up_coverage(label: &str) -> bool {
+    ["quads", "wedges"]
+        .iter()
+        .any(|what| label.starts_with(what))
+}
+
+/// Events that changed the picture without stopping it.
+fn event_warnings(report: &SubmitReport) -> Vec<Warning> {
+    let mut total = gnomon_raster::Counters::default();
+    report.passes.iter().for_each(|p| total.add(&p.totals()));
+    let saturated = |coverage: bool| -> u64 {
+        let passes = report.passes.iter();
+        passes
+            .filter(|p| adds_up_coverage(&p.label) == coverage)
+            .flat_map(|p| p.totals().events.blend_saturated)
+            .sum()
+    };
+    let events = [
+        (
+            "coverage-saturated",
+            saturated(true),
+            "channels of coverage buffers saturated: more overlaps there than they hold; split the light or use soft-shadow-volumes with buffer=r32f",
+        ),
+        (
+            "blend-saturated",
+            saturated(false),
+            "colour channels saturated while light was added; dim the lights or use color-format=rgba16f",
+        ),
+        (
+            "nan",
+            total.events.nan_canonicalised,
+            "shader values were NaN and have been replaced",
+        ),
+        (
+            "non-finite-vertices",
+            total.primitives.non_finite,
+            "primitives have vertices that are not finite in clip space and were dropped",
+        ),
+    ];
+    let warning = |(code, count, what): (&'static str, u64, &str)| Warning {
+        code,
+        count: count as usize,
+        message: format!("{count} {what}"),
+    };
+    events
+        .into_iter()
+        .filter(|(_, count, _)| *count != 0)
+        .map(warning)
+        .collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Encodes linear light as 8-bit sRGB (IEC 61966-2-1), rounding to nearest.
+#[derive(Clone, Debug)]
+pub struct SrgbEncoder {
+    /// `thresholds[i]`: the least linear value that is encoded as `i + 1`.
+    thresholds: Vec<f32>,
+}
+
+impl SrgbEncoder {
+    /// Prepares the thresholds.
+    pub fn new() -> Self {
+        let linear = |i: u32| {
+            let s = (f64::from(i) - 0.5) / 255.0;
+            if s <= 0.04045 {
+                s / 12.92
+            } else {
+                libm::pow((s + 0.055) / 1.055, 2.4)
+            }
+        };
+        Self {
+            thresholds: (1..256).map(|i| linear(i) as f32).collect(),
+        }
+    }
+
+    /// Encodes one texel; alpha is linear. Values out of 0..=1 are limited, NaN is 0.
+    pub fn encode(&self, [r, g, b, a]: [f32; 4]) -> [u8; 4] {
+        let channel = |v: f32| self.thresholds.partition_point(|t| *t <= v) as u8;
+        [
+            channel(r),
+            channel(g),
+            channel(b),
+            (a * 255.0).round_ties_even() as u8,
+        ]
+    }
+}
+
+impl Default for SrgbEncoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_is_the_standard_curve() {
+        let e = SrgbEncoder::new();
+        for i in 0..=255u8 {
+            let s = f64::from(i) / 255.0;
+            let linear = if s <= 0.04045 {
+                s / 12.92
+            } else {
+                libm::pow((s + 0.055) / 1.055, 2.4)
+            };
+            assert_eq!(e.encode([linear as f32; 4])[..3], [i; 3]);
+        }
+        assert_eq!(e.encode([f32::NAN, -1.0, 7.0, 2.0]), [0, 0, 255, 255]);
+        assert_eq!(e.encode([0.5, 0.18, 0.0, 0.5]), [188, 118, 0, 128]);
+    }
+
+    #[test]
+    fn hashes_cover_size_and_contents() {
+        let bytes = || [1u8, 2, 3, 4];
+        assert_eq!(hash([1, 1], bytes()), hash([1, 1], bytes()));
+        assert_ne!(hash([1, 2], bytes()), hash([2, 1], bytes()));
+        assert_ne!(hash([1, 1], bytes()), hash([1, 1], [1, 2, 3, 5]));
+        assert_eq!(hash([1, 1], bytes()).len(), 64);
+    }
+}

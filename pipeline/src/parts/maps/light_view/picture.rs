@@ -1,0 +1,236 @@
+//! A view as a render pass, and as shaders find positions in it.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
+use gnomon_raster::{
+    DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp, RenderPass, RenderPipeline, StoreOp,
+    Subresource, TextureDescriptor, TextureId, VertexBuffer,
+};
+use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth, Projection};
+use gnomon_shaders::surface::PixelRays;
+use gnomon_shaders::transform::{ClipFromWorld, Facets};
+
+use super::fit::Fitted;
+use super::surroundings::Surroundings;
+use crate::parts::passes::View;
+use crate::parts::visibility::attachment;
+use crate::technique::{TechniqueError, TextureSource};
+use crate::world::mesh::{Mesh, narrow};
+use crate::world::scene::Scene;
+
+/// The textures of a picture. Pictures may share them one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightMap {
+    /// Linear planar depth in red, `R32Float`.
+    pub(crate) depth: TextureId,
+    buffer: TextureId,
+    /// Texels along a side.
+    pub(crate) size: u32,
+    /// Texels by which slopes push surfaces away from the light: 0 unless set.
+    pub(crate) slope: f64,
+}
+
+/// The most that slopes push, in texels at the far distance.
+const SLOPE_LIMIT: f64 = 8.0;
+
+impl LightMap {
+    /// Of `size` by `size` texels.
+    ///
+    /// # Errors
+    /// The GPU refuses the size.
+    pub(crate) fn create(
+        size: u32,
+        textures: &mut dyn TextureSource,
+    ) -> Result<Self, TechniqueError> {
+        let mut create = |label: &str, format| {
+            textures.create(&TextureDescriptor::d2(label, format, size, size))
+        };
+        Ok(Self {
+            depth: create("light view", Format::R32Float)?,
+            buffer: create("light view depth", Format::Depth32FloatStencil8)?,
+            size,
+            slope: 0.0,
+        })
+    }
+}
+
+/// The casters' triangles with their planes, ready for any view of one light.
+pub(crate) struct CasterGeometry {
+    casters: Vec<CasterDraw>,
+    /// What the planes' distances are taken from, world space.
+    reference: DVec3,
+}
+
+struct CasterDraw {
+    object: usize,
+    name: String,
+    vertices: Arc<VertexBuffer>,
+    indices: Arc<IndexBuffer>,
+}
+
+impl CasterGeometry {
+    /// Vertices are relative to the origin of `view`, and planes to `reference`:
+    /// a point near the light.
+    pub(crate) fn new(
+        scene: &Scene,
+        around: &Surroundings<'_>,
+        view: &View,
+        reference: DVec3,
+    ) -> Self {
+        let casters = around.casters.iter().map(|&(object, mesh)| {
+            let vertices = Arc::new(facets(mesh, view, reference));
+            let indices = (0..vertices.len() as u32).collect();
+            CasterDraw {
+                object,
+                name: scene.objects[object].name.clone(),
+                vertices,
+                indices: Arc::new(IndexBuffer::new(indices)),
+            }
+        });
+        Self {
+            casters: casters.collect(),
+            reference,
+        }
+    }
+}
+
+/// Each triangle with its plane, for [`Facets`].
+fn facets(mesh: &Mesh, view: &View, reference: DVec3) -> VertexBuffer {
+    let mut data = Vec::with_capacity(mesh.triangles().len() * 21);
+    for t in 0..mesh.triangles().len() {
+        let [a, b, c] = mesh.corners(t);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let distance = normal.dot(a - reference) as f32;
+        for p in [a, b, c] {
+            data.extend(narrow(view.relative(p)));
+            data.extend(narrow(normal));
+            data.push(distance);
+        }
+    }
+    VertexBuffer { data, stride: 7 }
+}
+
+impl Fitted {
+    /// Draws the casters into `map`; those outside the picture too, unless `skip`.
+    pub(crate) fn pass(
+        &self,
+        label: String,
+        geometry: &CasterGeometry,
+        view: &View,
+        map: &LightMap,
+        skip: bool,
+    ) -> RenderPass {
+        let shader = PlanarDepth {
+            rays: self.rays(geometry.reference, map.size),
+            projection: self.frame.projection,
+            range: self.depth_range(),
+            slope: map.slope as f32,
+            slope_limit: (self.texel_at_far(map.size) * SLOPE_LIMIT) as f32,
+        };
+        let pipeline = Arc::new(RenderPipeline {
+            label: "light view".into(),
+            vertex: Facets(self.clip_from_world(view)).stage(),
+            fragment: Some(shader.stage()),
+            primitive: PrimitiveState::default(),
+            depth_stencil: DepthStencilState::opaque(),
+            color_targets: vec![ColorTargetState::OPAQUE],
+        });
+        let casters = geometry.casters.iter();
+        RenderPass {
+            label,
+            color: vec![attachment(map.depth, LoadOp::Clear([1.0; 4]))],
+            depth_stencil: Some(DepthStencilAttachment {
+                texture: map.buffer,
+                subresource: Subresource::default(),
+                depth_load: LoadOp::Clear(1.0),
+                depth_store: StoreOp::Discard,
+                stencil_load: LoadOp::DontCare,
+                stencil_store: StoreOp::Discard,
+            }),
+            draws: casters
+                .filter(|c| !skip || self.objects.binary_search(&c.object).is_ok())
+                .map(|c| Draw::indexed(&c.name, &pipeline, &c.vertices, &c.indices))
+                .collect(),
+        }
+    }
+
+    /// Where positions relative to the origin of `view` are in the picture.
+    pub(crate) fn mapping(&self, view: &View, size: u32) -> LightMapping {
+        let scale = 0.5 / self.half;
+        LightMapping {
+            centre: narrow(view.relative(self.frame.centre)),
+            axes: self.frame.axes.map(narrow),
+            projection: self.frame.projection,
+            scale: scale as f32,
+            offset: self.middle.map(|m| (0.5 - m * scale) as f32),
+            range: self.depth_range(),
+            size,
+            region: self.region,
+        }
+    }
+
+    fn depth_range(&self) -> DepthRange {
+        let [near, far] = self.range.map(|z| z as f32);
+        DepthRange { near, far }
+    }
+
+    /// Width of a texel in the picture: of tangents, or of lengths.
+    fn texel(&self, size: u32) -> f64 {
+        2.0 * self.half / f64::from(size)
+    }
+
+    /// Width of a texel at the far distance, world units.
+    pub(crate) fn texel_at_far(&self, size: u32) -> f64 {
+        match self.frame.projection {
+            Projection::Perspective => self.texel(size) * self.range[1],
+            Projection::Orthographic => self.texel(size),
+        }
+    }
+
+    fn rays(&self, reference: DVec3, size: u32) -> PixelRays {
+        let [right, down, along] = self.frame.axes;
+        let [x, y] = self.middle.map(|m| m - self.half);
+        let texel = self.texel(size);
+        let (eye, corner) = (self.frame.centre - reference, right * x + down * y);
+        let (eye, first) = match self.frame.projection {
+            Projection::Perspective => (eye, along + corner),
+            Projection::Orthographic => (eye + corner, along),
+        };
+        PixelRays {
+            eye: narrow(eye),
+            first: narrow(first),
+            right: narrow(right * texel),
+            down: narrow(down * texel),
+        }
+    }
+
+    /// Depth 0 at the near distance, 1 at infinity, of orthographic views at the far
+    /// distance; the picture's upper edge is `y = w`.
+    fn clip_from_world(&self, view: &View) -> ClipFromWorld {
+        let [right, down, along] = self.frame.axes;
+        let centre = view.relative(self.frame.centre);
+        let row = |axis: DVec3, offset: f64| {
+            let [x, y, z] = axis.to_array();
+            [x, y, z, offset - axis.dot(centre)].map(|v| v as f32)
+        };
+        let [x, y] = self.middle;
+        if self.frame.projection == Projection::Orthographic {
+            let [near, far] = self.range;
+            let depth = far - near;
+            return ClipFromWorld([
+                row(right / self.half, -x / self.half),
+                row(-down / self.half, y / self.half),
+                row(along / depth, -near / depth),
+                [0.0, 0.0, 0.0, 1.0],
+            ]);
+        }
+        ClipFromWorld([
+            row((right - along * x) / self.half, 0.0),
+            row((along * y - down) / self.half, 0.0),
+            row(along, -self.range[0]),
+            row(along, 0.0),
+        ])
+    }
+}

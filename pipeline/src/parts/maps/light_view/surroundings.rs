@@ -1,0 +1,158 @@
+//! What views are fitted to: the receivers that the camera sees and the casters.
+
+use glam::DVec3;
+
+use super::convex::clip;
+use crate::world::mesh::Mesh;
+use crate::world::scene::{Camera, Scene};
+
+/// Receivers and casters of a scene, gathered once for all its lights.
+pub(crate) struct Surroundings<'a> {
+    /// Corners of the receivers' triangles inside the camera's pyramid.
+    corners: Vec<DVec3>,
+    /// Where each polygon's corners end.
+    ends: Vec<usize>,
+    /// What each polygon is a part of.
+    owners: Vec<Owner>,
+    /// Casters: number in the scene, and mesh.
+    pub(super) casters: Vec<(usize, &'a Mesh)>,
+}
+
+/// A triangle of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Owner {
+    /// Number in the scene.
+    pub(crate) object: usize,
+    /// Number in the mesh.
+    pub(crate) triangle: usize,
+}
+
+impl<'a> Surroundings<'a> {
+    /// Of a picture of `size` (width, height).
+    pub(crate) fn new(scene: &'a Scene, size: [u32; 2]) -> Self {
+        let mut all = Self {
+            corners: Vec::new(),
+            ends: Vec::new(),
+            owners: Vec::new(),
+            casters: Vec::new(),
+        };
+        let pyramid = Pyramid::new(&scene.camera, size);
+        for (number, object) in scene.objects.iter().enumerate() {
+            if object.receives {
+                all.gather(number, &object.mesh, &pyramid);
+            }
+            if object.casts && !object.mesh.triangles().is_empty() {
+                all.casters.push((number, &object.mesh));
+            }
+        }
+        all
+    }
+
+    fn gather(&mut self, object: usize, mesh: &Mesh, pyramid: &Pyramid) {
+        let (mut polygon, mut scratch) = (Vec::new(), Vec::new());
+        for triangle in 0..mesh.triangles().len() {
+            polygon.clear();
+            polygon.extend(mesh.corners(triangle));
+            pyramid.clip(&mut polygon, &mut scratch);
+            if !polygon.is_empty() {
+                self.corners.extend_from_slice(&polygon);
+                self.ends.push(self.corners.len());
+                self.owners.push(Owner { object, triangle });
+            }
+        }
+    }
+
+    /// Convex polygons, world space, whose union holds every receiver seen.
+    pub(super) fn receivers(&self) -> impl Iterator<Item = &[DVec3]> {
+        let mut start = 0;
+        self.ends.iter().map(move |&end| {
+            let polygon = &self.corners[start..end];
+            start = end;
+            polygon
+        })
+    }
+
+    /// The same with the triangles that they are parts of.
+    pub(crate) fn owned_receivers(&self) -> impl Iterator<Item = (Owner, &[DVec3])> {
+        self.owners.iter().copied().zip(self.receivers())
+    }
+
+    /// Mean of the receivers' corners; `None` where nothing is seen.
+    pub(super) fn middle(&self) -> Option<DVec3> {
+        let count = self.corners.len() as f64;
+        let sum = self.corners.iter().sum::<DVec3>();
+        (count > 0.0).then(|| sum / count)
+    }
+}
+
+/// What a camera sees, as planes.
+struct Pyramid {
+    eye: DVec3,
+    near: f64,
+    forward: DVec3,
+    /// Normals of the sides, inwards.
+    sides: [DVec3; 4],
+}
+
+impl Pyramid {
+    fn new(camera: &Camera, [width, height]: [u32; 2]) -> Self {
+        let [right, up, forward] = camera.basis();
+        let tan = camera.tan_half_fov();
+        let across = forward * (tan * f64::from(width) / f64::from(height));
+        let above = forward * tan;
+        Self {
+            eye: camera.eye,
+            near: camera.near,
+            forward,
+            sides: [across + right, across - right, above + up, above - up],
+        }
+    }
+
+    fn clip(&self, polygon: &mut Vec<DVec3>, scratch: &mut Vec<DVec3>) {
+        clip(polygon, scratch, |p| {
+            self.forward.dot(p - self.eye) - self.near
+        });
+        for side in self.sides {
+            if polygon.is_empty() {
+                return;
+            }
+            clip(polygon, scratch, |p| side.dot(p - self.eye));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::scene::builtin;
+
+    #[test]
+    fn receivers_are_what_the_camera_sees() {
+        let scene = builtin::build("cylinder").unwrap();
+        let size = [96, 64];
+        let seen = Surroundings::new(&scene, size);
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        let clip = scene.camera.clip_from_world(aspect);
+        for p in seen.receivers().flatten() {
+            let row = |r: usize| {
+                let m = clip[r].map(f64::from);
+                m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3]
+            };
+            let w = row(3) * (1.0 + 1e-5);
+            assert!(row(0).abs() <= w && row(1).abs() <= w && w > 0.0, "{p}");
+        }
+        // The floor is far larger than what is seen of it, and the caster is seen.
+        assert!(seen.receivers().count() > 10);
+        let cut = |p: &&DVec3| p.y == 0.0 && p.x.abs() < 5.0 && p.z.abs() < 5.0;
+        assert!(seen.receivers().flatten().filter(cut).count() > 2);
+        assert_eq!(seen.casters.len(), 1);
+    }
+
+    #[test]
+    fn nothing_is_seen_by_a_camera_that_looks_away() {
+        let mut scene = builtin::build("cylinder").unwrap();
+        scene.camera.target = scene.camera.eye + DVec3::new(0.0, 5.0, 1.0);
+        let seen = Surroundings::new(&scene, [96, 64]);
+        assert_eq!((seen.receivers().count(), seen.middle()), (0, None));
+    }
+}

@@ -1,0 +1,257 @@
+//! The passes that techniques share: ambient light with depth, and light added
+//! per light source, over the same draws of the scene.
+//!
+//! What they are drawn to is in [`super::targets`], what is drawn in
+//! [`super::surface_draw`], and from where in [`super::view`].
+
+use glam::DVec3;
+use gnomon_raster::shader::FragmentStage;
+use gnomon_raster::state::{
+    ColorTargetState, CompareFunction, DepthState, DepthStencilState, StencilFaceState,
+    StencilOperation, StencilState,
+};
+use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
+use gnomon_shaders::surface::{AmbientWithPosition, Constant, Lambert, Phong};
+use gnomon_shaders::transform::{Facets, Points, Surfaces};
+
+use super::surface_draw::SurfaceDraw;
+pub(crate) use super::surface_draw::{clamped, index_buffer};
+pub(crate) use super::targets::{
+    COLOR_FORMAT, DEPTH_FORMAT, LIGHT, SHADING, Targets, label, lights,
+};
+pub(crate) use super::view::View;
+use super::visibility::{Positions, VisibilityTexture, attachment, binding};
+use crate::technique::Params;
+use crate::world::mesh::narrow;
+use crate::world::scene::{Material, Scene};
+
+/// Where a lit pass adds light, and how much of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LitTest {
+    /// At every surface.
+    Everywhere,
+    /// Where the stencil is 0; objects that take no shadow set it to 0 first.
+    StencilZero,
+    /// At every surface, times the visibility in a texture; objects that take no
+    /// shadow are fully lit.
+    Visibility(VisibilityTexture),
+}
+
+/// All objects of a scene, ready to draw in any pass.
+pub(crate) struct SceneDraws<'a> {
+    scene: &'a Scene,
+    /// The camera that all passes share.
+    pub(crate) view: View,
+    surfaces: Vec<SurfaceDraw<'a>>,
+    highlights: bool,
+}
+
+impl<'a> SceneDraws<'a> {
+    pub(crate) fn new(scene: &'a Scene, size: [u32; 2], params: &Params) -> Self {
+        let view = View::new(&scene.camera, size);
+        let drawn = scene
+            .objects
+            .iter()
+            .filter(|o| !o.mesh.triangles().is_empty());
+        Self {
+            scene,
+            surfaces: drawn
+                .flat_map(|o| SurfaceDraw::of_object(scene, &view, o))
+                .collect(),
+            view,
+            highlights: params.get(SHADING.name) != "lambert",
+        }
+    }
+
+    /// Clears all attachments, then draws ambient light and depth.
+    pub(crate) fn ambient_pass(&self, targets: &Targets) -> RenderPass {
+        let [r, g, b] = self.scene.background;
+        let ambient = self.scene.ambient;
+        let draw = |s: &SurfaceDraw<'_>| {
+            s.draw(RenderPipeline {
+                label: "ambient".into(),
+                vertex: Points(self.view.clip_from_world).stage(),
+                fragment: Some(Constant(s.ambient(ambient)).stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: DepthStencilState::opaque(),
+                color_targets: vec![ColorTargetState::OPAQUE],
+            })
+        };
+        RenderPass {
+            label: "ambient".into(),
+            color: targets.color(LoadOp::Clear([r, g, b, 1.0])),
+            depth_stencil: targets.depth_stencil(LoadOp::Clear(1.0), LoadOp::Clear(0)),
+            draws: self.surfaces.iter().map(draw).collect(),
+        }
+    }
+
+    /// The same, and writes where each pixel's surface is into `positions`: 16
+    /// bytes a fragment, counted as colour traffic of attachment 1.
+    pub(crate) fn ambient_pass_with_positions(
+        &self,
+        targets: &Targets,
+        positions: &Positions,
+    ) -> RenderPass {
+        let rays = self.view.pixel_rays();
+        let draw = |s: &SurfaceDraw<'_>| {
+            let shader = AmbientWithPosition {
+                ambient: s.ambient(self.scene.ambient),
+                receives: s.object.receives,
+                rays,
+            };
+            s.draw_facets(
+                &self.view,
+                RenderPipeline {
+                    label: "ambient".into(),
+                    vertex: Facets(self.view.clip_from_world).stage(),
+                    fragment: Some(shader.stage()),
+                    primitive: s.primitive.clone(),
+                    depth_stencil: DepthStencilState::opaque(),
+                    color_targets: vec![ColorTargetState::OPAQUE; 2],
+                },
+            )
+        };
+        let mut pass = self.ambient_pass(targets);
+        pass.color
+            .push(attachment(positions.texture, LoadOp::Clear([0.0; 4])));
+        pass.draws = self.surfaces.iter().map(draw).collect();
+        pass
+    }
+
+    /// Adds the light of light `light` to what the ambient pass drew.
+    pub(crate) fn lit_pass(
+        &self,
+        targets: &Targets,
+        light: usize,
+        label: &str,
+        test: LitTest,
+    ) -> RenderPass {
+        let draw = |s: &SurfaceDraw<'_>| {
+            let visibility = match test {
+                LitTest::Visibility(v) if s.object.receives => Some(v),
+                _ => None,
+            };
+            let mut draw = s.draw(RenderPipeline {
+                label: label.to_owned(),
+                vertex: Surfaces(self.view.clip_from_world).stage(),
+                fragment: Some(self.lit_shader(&s.material, light, visibility)),
+                primitive: s.primitive.clone(),
+                depth_stencil: lit_state(test, s.object.receives),
+                color_targets: vec![ColorTargetState::ADDITIVE],
+            });
+            draw.textures = visibility.iter().map(|v| binding(v.texture)).collect();
+            draw
+        };
+        RenderPass {
+            label: label.to_owned(),
+            color: targets.color(LoadOp::Load),
+            depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws: self.surfaces.iter().map(draw).collect(),
+        }
+    }
+
+    /// Draws of the objects that take no shadow, where they are seen, in one
+    /// colour; for a pass with one colour attachment and the depth of the frame.
+    pub(crate) fn not_receiving(&self, label: &str, colour: [f32; 4]) -> Vec<Draw> {
+        let surfaces = self.surfaces.iter().filter(|s| !s.object.receives);
+        let draw = |s: &SurfaceDraw<'_>| {
+            s.draw(RenderPipeline {
+                label: label.to_owned(),
+                vertex: Points(self.view.clip_from_world).stage(),
+                fragment: Some(Constant(colour).stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![ColorTargetState::OPAQUE],
+            })
+        };
+        surfaces.map(draw).collect()
+    }
+
+    /// Draws of the facets that cast and take shadow and to which `flat` gives
+    /// numbers, where they are seen; for a pass with one colour attachment and the
+    /// depth of the frame.
+    pub(crate) fn shadowed_facets(
+        &self,
+        label: &str,
+        (fragment, target): (FragmentStage, ColorTargetState),
+        flat: &dyn Fn([DVec3; 3]) -> Option<[f32; 4]>,
+    ) -> Vec<Draw> {
+        let both = |s: &&SurfaceDraw<'_>| s.object.casts && s.object.receives;
+        let draw = |s: &SurfaceDraw<'_>| {
+            let pipeline = RenderPipeline {
+                label: label.to_owned(),
+                vertex: Facets(self.view.clip_from_world).stage(),
+                fragment: Some(fragment.clone()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![target],
+            };
+            s.draw_flat(pipeline, flat)
+        };
+        let draws = self.surfaces.iter().filter(both).map(draw);
+        draws
+            .filter(|d| d.indices.as_ref().is_some_and(|i| !i.indices().is_empty()))
+            .collect()
+    }
+
+    fn lit_shader(
+        &self,
+        material: &Material,
+        light: usize,
+        visibility: Option<VisibilityTexture>,
+    ) -> FragmentStage {
+        let light = &self.scene.lights[light];
+        let coloured = |c: [f32; 3]| [0, 1, 2].map(|i| c[i] * light.colour[i]);
+        let lambert = Lambert {
+            diffuse: coloured(material.albedo),
+            light: self.view.light(light.hard()),
+        };
+        if !self.highlights || material.specular == [0.0; 3] {
+            return match visibility {
+                Some(v) => v.shadowed(lambert).stage(),
+                None => lambert.stage(),
+            };
+        }
+        let phong = Phong {
+            lambert,
+            specular: coloured(material.specular),
+            shininess: material.shininess,
+            eye: narrow(self.view.eye()),
+        };
+        match visibility {
+            Some(v) => v.shadowed(phong).stage(),
+            None => phong.stage(),
+        }
+    }
+}
+
+fn lit_state(test: LitTest, receives: bool) -> DepthStencilState {
+    match (test, receives) {
+        (LitTest::StencilZero, true) => DepthStencilState::equal_where_stencil_matches(),
+        (LitTest::StencilZero, false) => {
+            let face = StencilFaceState {
+                pass_op: StencilOperation::Zero,
+                ..StencilFaceState::IGNORE
+            };
+            DepthStencilState {
+                stencil: StencilState {
+                    front: face,
+                    back: face,
+                },
+                ..equal_depth()
+            }
+        }
+        (LitTest::Everywhere | LitTest::Visibility(_), _) => equal_depth(),
+    }
+}
+
+fn equal_depth() -> DepthStencilState {
+    DepthStencilState {
+        depth: DepthState {
+            compare: CompareFunction::Equal,
+            write: false,
+            bounds: None,
+        },
+        ..DepthStencilState::default()
+    }
+}

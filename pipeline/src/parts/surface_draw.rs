@@ -1,0 +1,140 @@
+//! A scene's surfaces, ready to draw in any pass.
+//!
+//! # Near plane
+//!
+//! All geometry is drawn with depth clamp, so that the near plane never cuts a
+//! triangle and a volume's cap keeps the surface's depth plane to the bit.
+//! Objects that reach nearer than the near plane get it as a clip plane, which
+//! drops fragments and makes no vertices.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use gnomon_raster::state::PrimitiveState;
+use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, VertexBuffer};
+
+use super::view::View;
+use crate::world::mesh::{narrow, widen};
+use crate::world::scene::{Material, MaterialPart, Object, Scene};
+
+/// Geometry of one object in one material, ready to draw.
+pub(crate) struct SurfaceDraw<'a> {
+    pub(crate) object: &'a Object,
+    pub(crate) material: Material,
+    vertices: Arc<VertexBuffer>,
+    indices: Arc<IndexBuffer>,
+    pub(crate) primitive: PrimitiveState,
+}
+
+impl<'a> SurfaceDraw<'a> {
+    /// A draw for each material; vertices are shared.
+    pub(crate) fn of_object(scene: &Scene, view: &View, object: &'a Object) -> Vec<Self> {
+        let shading = object.mesh.shading_vertices();
+        let rows = shading.positions.iter().zip(&shading.normals);
+        let data = rows
+            .flat_map(|(p, n)| view.point(*p).into_iter().chain(*n))
+            .collect();
+        let mut primitive = clamped();
+        if crosses_near_plane(scene, object) {
+            primitive.clip_planes.push([0.0, 0.0, 1.0, 0.0]);
+        }
+        let vertices = Arc::new(VertexBuffer { data, stride: 6 });
+        let draw = |part: MaterialPart| {
+            let own = part
+                .triangles
+                .iter()
+                .map(|&t| shading.triangles[t as usize]);
+            Self {
+                object,
+                material: part.material,
+                vertices: vertices.clone(),
+                indices: index_buffer(&own.collect::<Vec<_>>()),
+                primitive: primitive.clone(),
+            }
+        };
+        object.painted().into_iter().map(draw).collect()
+    }
+
+    /// Ambient light times albedo, opaque.
+    pub(crate) fn ambient(&self, light: [f32; 3]) -> [f32; 4] {
+        let albedo = self.material.albedo;
+        let [r, g, b] = [0, 1, 2].map(|i| light[i] * albedo[i]);
+        [r, g, b, 1.0]
+    }
+
+    /// Each triangle with its plane, for [`gnomon_shaders::transform::Facets`].
+    pub(crate) fn draw_facets(&self, view: &View, pipeline: RenderPipeline) -> Draw {
+        let plane = |corners: [DVec3; 3]| {
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let [x, y, z] = narrow(normal);
+            Some([x, y, z, normal.dot(a - view.eye()) as f32])
+        };
+        self.draw_flat(pipeline, &plane)
+    }
+
+    /// The triangles to which `flat` gives four numbers, for the flat varyings of
+    /// [`gnomon_shaders::transform::Facets`]; corners are relative to the view's origin.
+    pub(crate) fn draw_flat(
+        &self,
+        pipeline: RenderPipeline,
+        flat: &dyn Fn([DVec3; 3]) -> Option<[f32; 4]>,
+    ) -> Draw {
+        let stride = self.vertices.stride;
+        let corner = |i: u32| {
+            let at = i as usize * stride;
+            [0, 1, 2].map(|k| self.vertices.data[at + k])
+        };
+        let mut data = Vec::new();
+        for triangle in self.indices.indices().chunks_exact(3) {
+            let corners = [0, 1, 2].map(|k| corner(triangle[k]));
+            let Some(numbers) = flat(corners.map(widen)) else {
+                continue;
+            };
+            for p in corners {
+                data.extend(p);
+                data.extend(numbers);
+            }
+        }
+        let vertices = Arc::new(VertexBuffer { data, stride: 7 });
+        let indices = (0..vertices.len() as u32).collect();
+        Draw::indexed(
+            &self.object.name,
+            &Arc::new(pipeline),
+            &vertices,
+            &Arc::new(IndexBuffer::new(indices)),
+        )
+    }
+
+    pub(crate) fn draw(&self, pipeline: RenderPipeline) -> Draw {
+        Draw::indexed(
+            &self.object.name,
+            &Arc::new(pipeline),
+            &self.vertices,
+            &self.indices,
+        )
+    }
+}
+
+/// Whether some vertex may be nearer than the near plane.
+fn crosses_near_plane(scene: &Scene, object: &Object) -> bool {
+    let camera = &scene.camera;
+    let [_, _, forward] = camera.basis();
+    let nearest = camera.near * (1.0 + 1e-4);
+    let depth = |i| (object.mesh.position(i) - camera.eye).dot(forward);
+    (0..object.mesh.positions().len() as u32).any(|i| depth(i) < nearest)
+}
+
+/// Nothing culled, depth clamped: for scene geometry and volumes alike.
+pub(crate) fn clamped() -> PrimitiveState {
+    PrimitiveState {
+        depth_clamp: true,
+        ..PrimitiveState::default()
+    }
+}
+
+pub(crate) fn index_buffer(triangles: &[[u32; 3]]) -> Arc<IndexBuffer> {
+    Arc::new(IndexBuffer::new(
+        triangles.iter().flatten().copied().collect(),
+    ))
+}

@@ -1,0 +1,141 @@
+//! What soft techniques share: visibility in a texture, positions to compute it
+//! from, and draws that write it.
+//!
+//! The order of a frame is: ambient light with depth and positions
+//! ([`super::passes::SceneDraws::ambient_pass_with_positions`]); then for each
+//! light, the first one last, passes that leave its visibility in a texture, and
+//! a lit pass with [`super::passes::LitTest::Visibility`]. One texture serves all
+//! lights in turn.
+
+use std::sync::Arc;
+
+use glam::DVec4;
+use gnomon_raster::{
+    ColorAttachment, Draw, Format, LoadOp, RenderPipeline, Sampler, StoreOp, Subresource,
+    TextureBinding, TextureDescriptor, TextureId, VertexBuffer,
+};
+use gnomon_shaders::surface::Shadowed;
+
+use super::surface_draw::index_buffer;
+use super::view::View;
+use crate::technique::{TechniqueError, TextureSource, VisibilityOutput};
+
+/// World-space positions of what pixels show, relative to [`View`]'s origin: an
+/// `Rgba32Float` image; w is 1 where shadow may fall, else 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Positions {
+    pub(crate) texture: TextureId,
+}
+
+impl Positions {
+    pub(crate) fn create(
+        [width, height]: [u32; 2],
+        textures: &mut dyn TextureSource,
+    ) -> Result<Self, TechniqueError> {
+        let desc = TextureDescriptor::d2("positions", Format::Rgba32Float, width, height);
+        Ok(Self {
+            texture: textures.create(&desc)?,
+        })
+    }
+}
+
+/// Visibility of a light: `texel · scale + offset`, limited to 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VisibilityTexture {
+    pub(crate) texture: TextureId,
+    pub(crate) scale: f32,
+    pub(crate) offset: f32,
+    /// Red, green and blue apart; else red for all.
+    pub(crate) coloured: bool,
+}
+
+impl VisibilityTexture {
+    /// A texture whose red is the visibility.
+    pub(crate) fn red(texture: TextureId) -> Self {
+        Self {
+            texture,
+            scale: 1.0,
+            offset: 0.0,
+            coloured: false,
+        }
+    }
+
+    /// Red, for the frame's outputs.
+    pub(crate) fn output(&self) -> VisibilityOutput {
+        VisibilityOutput::Red {
+            texture: self.texture,
+            scale: self.scale,
+            offset: self.offset,
+        }
+    }
+
+    pub(crate) fn shadowed<S>(&self, surface: S) -> Shadowed<S> {
+        Shadowed {
+            surface,
+            scale: self.scale,
+            offset: self.offset,
+            coloured: self.coloured,
+        }
+    }
+}
+
+/// All of a texture's first image.
+pub(crate) fn attachment(texture: TextureId, load: LoadOp<[f32; 4]>) -> ColorAttachment {
+    ColorAttachment {
+        texture,
+        subresource: Subresource::default(),
+        load,
+        store: StoreOp::Store,
+    }
+}
+
+/// A texture for fetches of single texels.
+pub(crate) fn binding(texture: TextureId) -> TextureBinding {
+    TextureBinding {
+        texture,
+        sampler: Sampler::default(),
+    }
+}
+
+/// One triangle over all pixels; for [`gnomon_shaders::transform::FullScreen`].
+pub(crate) fn full_screen(pipeline: RenderPipeline, textures: Vec<TextureBinding>) -> Draw {
+    let label = pipeline.label.clone();
+    Draw {
+        textures,
+        ..Draw::vertices_only(&label, &Arc::new(pipeline), 3)
+    }
+}
+
+/// Vertices `(p, 1)` and `(direction, 0)` of world space as a buffer for
+/// [`gnomon_shaders::transform::HomogeneousPoints`]: points relative to the
+/// view's origin, rounded once.
+pub(crate) fn homogeneous(view: &View, vertices: &[DVec4]) -> VertexBuffer {
+    let moved = |v: &DVec4| {
+        let p = if v.w == 0.0 {
+            v.truncate()
+        } else {
+            view.relative(v.truncate())
+        };
+        [p.x as f32, p.y as f32, p.z as f32, v.w as f32]
+    };
+    VertexBuffer {
+        data: vertices.iter().flat_map(moved).collect(),
+        stride: 4,
+    }
+}
+
+/// Triangles of homogeneous vertices: a wedge, half of one, or a quad. Each has
+/// uniforms of its own and so is a draw of its own.
+pub(crate) fn homogeneous_draw(
+    label: &str,
+    pipeline: RenderPipeline,
+    vertices: &Arc<VertexBuffer>,
+    triangles: &[[u32; 3]],
+    textures: Vec<TextureBinding>,
+) -> Draw {
+    let indices = index_buffer(triangles);
+    Draw {
+        textures,
+        ..Draw::indexed(label, &Arc::new(pipeline), vertices, &indices)
+    }
+}

@@ -1,0 +1,208 @@
+//! Draws that count shadow volumes into the stencil, caster by caster.
+
+use std::sync::Arc;
+
+use gnomon_raster::state::{ColorTargetState, DepthStencilState};
+use gnomon_raster::{Draw, RenderPipeline, VertexBuffer};
+use gnomon_shaders::transform::HomogeneousPoints;
+
+use super::near_pyramid::{NearPyramid, outside_view};
+use crate::geometry::volume::ShadowVolume;
+use crate::parts::casters::{self, Examined, SKIP};
+use crate::parts::passes::{self, View};
+use crate::technique::{CasterUse, ParamInfo, Params, TechniqueError, VolumeMethod, Warning};
+use crate::world::light::HardLight;
+use crate::world::scene::{Object, Scene};
+
+pub(crate) const METHOD: ParamInfo = ParamInfo {
+    name: "method",
+    default: "auto",
+    valid: "auto|zpass|zfail",
+    summary: "auto: z-pass for casters that cannot shadow the near rectangle, z-fail for the others",
+};
+
+/// The casters of a scene, examined once for all lights.
+pub(crate) struct Casters<'a> {
+    scene: &'a Scene,
+    view: View,
+    size: [u32; 2],
+    method: Option<VolumeMethod>,
+    skip: bool,
+    examined: Vec<Examined<'a>>,
+}
+
+/// The volumes of all casters for one light point.
+#[derive(Default)]
+pub(crate) struct Volumes {
+    /// One for each caster that is drawn.
+    pub(crate) draws: Vec<Draw>,
+    /// One for each caster.
+    pub(crate) uses: Vec<CasterUse>,
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl<'a> Casters<'a> {
+    /// Examines the casters of `scene` for `technique`, which has the parameters
+    /// of this module.
+    ///
+    /// # Errors
+    /// A caster is not closed and must be.
+    pub(crate) fn new(
+        technique: &'static str,
+        scene: &'a Scene,
+        size: [u32; 2],
+        params: &Params,
+    ) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            scene,
+            view: View::new(&scene.camera, size),
+            size,
+            method: match params.get(METHOD.name) {
+                "zpass" => Some(VolumeMethod::DepthPass),
+                "zfail" => Some(VolumeMethod::DepthFail),
+                _ => None,
+            },
+            skip: params.get(SKIP.name) != "off",
+            examined: casters::examine(technique, scene, params)?,
+        })
+    }
+
+    /// The volumes that `hard` throws, a point of light number `light`, for a
+    /// pass with colour attachments `color`, of which none is written.
+    pub(crate) fn volumes(
+        &self,
+        light: usize,
+        hard: HardLight,
+        color: &[ColorTargetState],
+    ) -> Volumes {
+        let pyramid = NearPyramid::new(&self.scene.camera, self.size, hard);
+        let mut built = Volumes::default();
+        for Examined {
+            number,
+            object,
+            caster,
+        } in &self.examined
+        {
+            let mesh = &object.mesh;
+            let hidden = self.skip && outside_view(&self.scene.camera, self.size, mesh, hard);
+            let method = match self.method {
+                _ if hidden => VolumeMethod::Skipped,
+                Some(method) => method,
+                None if pyramid.may_touch(mesh) => VolumeMethod::DepthFail,
+                None => VolumeMethod::DepthPass,
+            };
+            let mut used = CasterUse {
+                object: *number,
+                light,
+                method,
+                triangles: [0; 3],
+            };
+            if !hidden {
+                let volume = caster.volume(mesh, hard);
+                used.triangles = volume.ranges().map(|r| r.len());
+                built.warnings.extend(wrap_warning(object, &volume));
+                built.draws.push(self.draw(object, &volume, method, color));
+            }
+            built.uses.push(used);
+        }
+        built
+    }
+
+    fn draw(
+        &self,
+        object: &Object,
+        volume: &ShadowVolume,
+        method: VolumeMethod,
+        color: &[ColorTargetState],
+    ) -> Draw {
+        let depth_pass = method == VolumeMethod::DepthPass;
+        let (label, depth_stencil, triangles) = if depth_pass {
+            (
+                "z-pass",
+                DepthStencilState::z_pass_volumes(),
+                volume.sides(),
+            )
+        } else {
+            (
+                "z-fail",
+                DepthStencilState::z_fail_volumes(),
+                volume.triangles(),
+            )
+        };
+        let pipeline = RenderPipeline {
+            label: label.into(),
+            vertex: HomogeneousPoints(self.view.clip_from_world).stage(),
+            fragment: None,
+            primitive: passes::clamped(),
+            depth_stencil,
+            color_targets: color.to_vec(),
+        };
+        let (positions, triangles) = referenced(volume.positions(), triangles);
+        let vertices = VertexBuffer {
+            data: positions.iter().flat_map(|v| self.moved(*v)).collect(),
+            stride: 4,
+        };
+        let indices = passes::index_buffer(&triangles);
+        Draw::indexed(
+            &object.name,
+            &Arc::new(pipeline),
+            &Arc::new(vertices),
+            &indices,
+        )
+    }
+
+    /// Points move with the view's origin, directions stay.
+    fn moved(&self, [x, y, z, w]: [f32; 4]) -> [f32; 4] {
+        if w == 0.0 {
+            return [x, y, z, w];
+        }
+        let [x, y, z] = self.view.point([x, y, z]);
+        [x, y, z, w]
+    }
+}
+
+/// The positions that `triangles` refer to, in their order, and the triangles on
+/// them: a volume's sides need few of its vertices, and hundreds of volumes are
+/// kept at a time.
+fn referenced(positions: &[[f32; 4]], triangles: &[[u32; 3]]) -> (Vec<[f32; 4]>, Vec<[u32; 3]>) {
+    let mut place = vec![u32::MAX; positions.len()];
+    triangles
+        .iter()
+        .flatten()
+        .for_each(|&i| place[i as usize] = 0);
+    let mut kept = Vec::new();
+    for (place, position) in place.iter_mut().zip(positions) {
+        if *place == 0 {
+            *place = kept.len() as u32;
+            kept.push(*position);
+        }
+    }
+    let moved = triangles.iter().map(|t| t.map(|i| place[i as usize]));
+    (kept, moved.collect())
+}
+
+fn wrap_warning(object: &Object, volume: &ShadowVolume) -> Option<Warning> {
+    (volume.max_multiplicity() > 255).then(|| Warning {
+        code: "edge-multiplicity",
+        count: 1,
+        message: format!(
+            "object '{}': {} volume sides leave one edge; a multiple of 256 counts as lit",
+            object.name,
+            volume.max_multiplicity()
+        ),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_that_nothing_refers_to_are_left_out() {
+        let all = [0.0, 1.0, 2.0, 3.0, 4.0].map(|x| [x; 4]);
+        let (kept, triangles) = referenced(&all, &[[4, 1, 3], [3, 1, 4]]);
+        assert_eq!(kept, [[1.0; 4], [3.0; 4], [4.0; 4]]);
+        assert_eq!(triangles, [[2, 0, 1], [1, 0, 2]]);
+        assert_eq!(referenced(&all, &[]), (Vec::new(), Vec::new()));
+    }
+}

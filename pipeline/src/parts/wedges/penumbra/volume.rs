@@ -1,0 +1,219 @@
+//! The wedges of one caster and the volume that their front planes bound.
+//!
+//! The front planes of a loop, the caster's light-facing triangles above them and
+//! a cap at infinity below close a volume; its winding number W and the wedges
+//! give the light that a point sees: `255 (1 - W) + sum of 255 s over wedges that
+//! hold it` (paper II, §3). Wherever linking leaves a gap, plain pieces keep the
+//! volume closed: a point may get the wrong intensity near them, but no streak
+//! runs across the picture.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec3, DVec4};
+
+use super::light::LightSphere;
+use super::report::Met;
+use crate::geometry::wedge::Plane;
+use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge, link};
+use crate::geometry::winding;
+use crate::world::mesh::Mesh;
+
+/// Homogeneous corners, world space; counter-clockwise seen from outside.
+pub(crate) type Triangle = [DVec4; 3];
+
+/// What one caster does to a spherical light.
+pub(crate) struct SoftVolume {
+    /// In the order of the silhouette's loops.
+    pub(crate) wedges: Vec<LinkedWedge>,
+    /// Boundary of the umbra where there is no wedge.
+    pub(crate) gaps: Vec<Gap>,
+    /// Light-facing triangles of the caster.
+    pub(crate) cap: Vec<[u32; 3]>,
+    /// Between the caster's silhouette and the loop that collapsing left of it.
+    pub(crate) patches: Vec<Triangle>,
+    /// At infinity.
+    pub(crate) bottom: Vec<Triangle>,
+}
+
+/// A piece of the umbra's boundary without wedge.
+pub(crate) struct Gap {
+    pub(crate) triangles: Vec<Triangle>,
+    /// Its plane, positive inside the umbra.
+    pub(crate) plane: Plane,
+}
+
+/// A side of the volume: two near points and where they go.
+struct Side {
+    near: [DVec3; 2],
+    far: [DVec3; 2],
+    has_wedge: bool,
+}
+
+impl SoftVolume {
+    pub(crate) fn new(
+        loops: &[Vec<DVec3>],
+        cap: Vec<[u32; 3]>,
+        sphere: &LightSphere,
+        settings: &LinkedSettings,
+        met: &mut Met,
+    ) -> Self {
+        let mut volume = Self {
+            wedges: Vec::new(),
+            gaps: Vec::new(),
+            cap,
+            patches: Vec::new(),
+            bottom: Vec::new(),
+        };
+        for points in loops {
+            volume.add_loop(points, sphere, settings, met);
+        }
+        volume
+    }
+
+    fn add_loop(
+        &mut self,
+        points: &[DVec3],
+        sphere: &LightSphere,
+        settings: &LinkedSettings,
+        met: &mut Met,
+    ) {
+        let wedges = link(
+            points,
+            sphere.centre,
+            sphere.radius,
+            settings,
+            &mut met.linked,
+        );
+        let sides = if wedges.is_empty() {
+            hard_sides(points, sphere.centre)
+        } else {
+            chained(&wedges)
+        };
+        met.gaps += sides.iter().filter(|s| !s.has_wedge).count() as u64;
+        let gaps = sides.iter().filter(|s| !s.has_wedge);
+        self.gaps.extend(gaps.filter_map(Side::gap));
+        self.patches.extend(patches(points, &sides));
+        self.bottom.extend(bottom(points, sphere.centre, &sides));
+        self.wedges.extend(wedges);
+    }
+
+    /// The winding number of the front volume round `p`; `p` not on its boundary.
+    pub(crate) fn winding(&self, mesh: &Mesh, p: DVec3) -> i32 {
+        let fronts = self.wedges.iter().flat_map(LinkedWedge::front_quad);
+        let gaps = self.gaps.iter().flat_map(|g| g.triangles.iter().copied());
+        let cap = self
+            .cap
+            .iter()
+            .map(|t| t.map(|i| mesh.position(i).extend(1.0)));
+        let all = fronts
+            .chain(gaps)
+            .chain(cap)
+            .chain(self.patches.iter().copied())
+            .chain(self.bottom.iter().copied());
+        winding::of_triangles(all, p)
+    }
+
+    /// Whether `p` may be inside a wedge, within `margin` in world units.
+    pub(crate) fn may_hold(&self, p: DVec3, margin: f64) -> bool {
+        self.wedges.iter().any(|w| w.depth(p) >= -margin)
+    }
+}
+
+impl Side {
+    fn gap(&self) -> Option<Gap> {
+        let [[a, b], [r, s]] = [self.near, self.far];
+        let triangles: Vec<Triangle> = [
+            [b.extend(1.0), a.extend(1.0), r.extend(0.0)],
+            [b.extend(1.0), r.extend(0.0), s.extend(0.0)],
+        ]
+        .into_iter()
+        .filter(|[x, y, z]| x != y && y != z && z != x)
+        .collect();
+        let plane = Plane::spanned(a, b - a, r)
+            .or_else(|| Plane::spanned(a, b - a, s))
+            .or_else(|| Plane::spanned(a, r, s));
+        // Without plane it has no area from anywhere.
+        plane.map(|plane| Gap { triangles, plane })
+    }
+}
+
+/// The sides of the hard shadow volume of a loop, where there are no wedges.
+fn hard_sides(points: &[DVec3], centre: DVec3) -> Vec<Side> {
+    let next = |k: usize| points[(k + 1) % points.len()];
+    (0..points.len())
+        .map(|k| Side {
+            near: [points[k], next(k)],
+            far: [points[k], next(k)].map(|p| p - centre),
+            has_wedge: false,
+        })
+        .filter(|side| side.near[0] != side.near[1])
+        .collect()
+}
+
+/// The front quads of a loop's wedges, and a side wherever one does not begin
+/// where the last ends.
+fn chained(wedges: &[LinkedWedge]) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(wedges.len());
+    for (k, wedge) in wedges.iter().enumerate() {
+        sides.push(Side {
+            near: wedge.edge,
+            far: wedge.front_rays,
+            has_wedge: true,
+        });
+        let next = &wedges[(k + 1) % wedges.len()];
+        let gap = Side {
+            near: [wedge.edge[1], next.edge[0]],
+            far: [wedge.front_rays[1], next.front_rays[0]],
+            has_wedge: false,
+        };
+        if gap.near[0] != gap.near[1] || gap.far[0] != gap.far[1] {
+            sides.push(gap);
+        }
+    }
+    sides
+}
+
+type Bits = [u64; 3];
+
+fn bits(p: DVec3) -> Bits {
+    p.to_array().map(f64::to_bits)
+}
+
+/// Triangles whose boundary is the sides' near loop less the loop of points:
+/// fans from one point over the edges that only one of the two has.
+fn patches(points: &[DVec3], sides: &[Side]) -> Vec<Triangle> {
+    let mut balance: BTreeMap<(Bits, Bits), (i32, [DVec3; 2])> = BTreeMap::new();
+    let mut add = |[a, b]: [DVec3; 2], count: i32| {
+        if a != b {
+            balance.entry((bits(a), bits(b))).or_insert((0, [a, b])).0 += count;
+        }
+    };
+    for k in 0..points.len() {
+        add([points[k], points[(k + 1) % points.len()]], -1);
+    }
+    sides.iter().for_each(|side| add(side.near, 1));
+    let changed: Vec<(i32, [DVec3; 2])> = balance.into_values().filter(|(n, _)| *n != 0).collect();
+    let Some((_, [apex, _])) = changed.first().copied() else {
+        return Vec::new();
+    };
+    let fan = changed.iter().flat_map(|&(count, [a, b])| {
+        let [a, b] = if count > 0 { [a, b] } else { [b, a] };
+        let triangle = [apex, a, b].map(|p| p.extend(1.0));
+        std::iter::repeat_n(triangle, count.unsigned_abs() as usize)
+    });
+    fan.filter(|[x, y, z]| x != y && z != x).collect()
+}
+
+/// The cap at infinity: a fan from the loop's mean direction over the far ends.
+fn bottom(points: &[DVec3], centre: DVec3, sides: &[Side]) -> Vec<Triangle> {
+    let sum: DVec3 = points
+        .iter()
+        .map(|p| (*p - centre).normalize_or_zero())
+        .sum();
+    let Some(mean) = sum.try_normalize() else {
+        return Vec::new();
+    };
+    let fan = sides.iter().filter(|side| side.far[0] != side.far[1]);
+    fan.map(|side| [mean, side.far[1], side.far[0]].map(|d| d.extend(0.0)))
+        .collect()
+}

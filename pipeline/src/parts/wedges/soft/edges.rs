@@ -1,0 +1,152 @@
+//! Silhouette edges of all casters for one light, with what decides sides.
+//!
+//! One plane per edge, through the light's centre, rounded once: hard shadow
+//! quads and penumbrae use its very bits. The eye's own hard count and its sides
+//! are taken a hair in front of the eye, in f64, so that an eye on a plane is on
+//! one side of it for both.
+
+use glam::DVec3;
+
+use super::outlines::pieces;
+use crate::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use crate::geometry::volume::ShadowVolume;
+use crate::geometry::wedge::hard_plane;
+use crate::geometry::winding::volume_winding;
+use crate::parts::casters::{self, Examined};
+use crate::technique::{Params, TechniqueError};
+use crate::world::adjacency::EdgeAdjacency;
+use crate::world::light::HardLight;
+use crate::world::mesh::{Mesh, narrow};
+use crate::world::scene::{Camera, Scene};
+
+/// A silhouette edge.
+pub(crate) struct SoftEdge {
+    /// Ends, world space, the occluder on the left seen from the light.
+    pub(crate) ends: [DVec3; 2],
+    /// Normal of its hard plane, out of the umbra; zero where the edge points at
+    /// the light and has none.
+    pub(crate) normal: [f32; 3],
+    /// Whether the eye is on the umbra side.
+    pub(crate) eye_inside: bool,
+}
+
+/// Silhouettes of one or all casters.
+#[derive(Default)]
+pub(crate) struct Silhouettes {
+    /// Edges, caster after caster.
+    pub(crate) edges: Vec<SoftEdge>,
+    /// How many casters hide the light's centre from the eye.
+    pub(crate) eye_count: i32,
+}
+
+/// The casters of a scene, examined once for all lights.
+pub(crate) struct Casters<'a> {
+    camera: &'a Camera,
+    examined: Vec<Examined<'a>>,
+}
+
+impl<'a> Casters<'a> {
+    /// For `technique`, which has the parameter of [`casters`].
+    pub(crate) fn new(
+        technique: &'static str,
+        scene: &'a Scene,
+        params: &Params,
+    ) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            camera: &scene.camera,
+            examined: casters::examine(technique, scene, params)?,
+        })
+    }
+
+    /// Silhouettes seen from `centre`, of all casters together.
+    pub(crate) fn silhouettes(&self, centre: DVec3) -> Silhouettes {
+        let mut all = Silhouettes::default();
+        for caster in self.each(centre) {
+            all.edges.extend(caster.edges);
+            all.eye_count += caster.eye_count;
+        }
+        all
+    }
+
+    /// Silhouettes seen from `centre`, caster by caster.
+    pub(crate) fn each(&self, centre: DVec3) -> Vec<Silhouettes> {
+        let light = HardLight::Point(centre);
+        let of = |examined: &Examined<'_>| {
+            let mesh = &examined.object.mesh;
+            let volume = examined.caster.volume(mesh, light);
+            self.of_mesh(mesh, &examined.silhouette(light), &volume, centre)
+        };
+        self.examined.iter().map(of).collect()
+    }
+
+    /// Silhouettes seen from `centre`, outline by outline with its holes, caster
+    /// after caster.
+    pub(crate) fn outlines(&self, centre: DVec3) -> Vec<Silhouettes> {
+        let light = HardLight::Point(centre);
+        let of_piece = |piece: Mesh| {
+            let adjacency = EdgeAdjacency::new(piece.triangles());
+            let orientation = Orientation::generalised(&light_facing(&piece, light));
+            let silhouette = Silhouette::new(&piece, &adjacency, &orientation);
+            let volume = ShadowVolume::generalised(&piece, &adjacency, light);
+            self.of_mesh(&piece, &silhouette, &volume, centre)
+        };
+        let pieces = self.examined.iter().flat_map(|examined| {
+            let adjacency = examined.caster.adjacency();
+            pieces(
+                &examined.object.mesh,
+                adjacency,
+                &examined.orientation(light),
+            )
+        });
+        let all = pieces.map(of_piece);
+        all.filter(|s| !s.edges.is_empty() || s.eye_count != 0)
+            .collect()
+    }
+
+    fn of_mesh(
+        &self,
+        mesh: &Mesh,
+        silhouette: &Silhouette,
+        volume: &ShadowVolume,
+        centre: DVec3,
+    ) -> Silhouettes {
+        let eye = beside_eye(self.camera);
+        let point = |i: u32| mesh.position(i);
+        let edges = silhouette.edges.iter();
+        Silhouettes {
+            edges: edges
+                .map(|&[a, b]| SoftEdge::new([point(a), point(b)], centre, eye))
+                .collect(),
+            eye_count: volume_winding(volume, eye),
+        }
+    }
+}
+
+impl SoftEdge {
+    fn new(ends: [DVec3; 2], centre: DVec3, eye: DVec3) -> Self {
+        let plane = hard_plane(centre, ends);
+        let normal = plane.map_or(DVec3::ZERO, |p| p.normal);
+        Self {
+            ends,
+            normal: narrow(normal),
+            eye_inside: normal.dot(eye - centre) < 0.0,
+        }
+    }
+
+    /// Whether the edge has a hard plane; without one it covers nothing.
+    pub(crate) fn has_plane(&self) -> bool {
+        self.normal != [0.0; 3]
+    }
+
+    /// Away from the light through both ends, not normalised.
+    pub(crate) fn away(&self, centre: DVec3) -> [DVec3; 2] {
+        self.ends.map(|e| e - centre)
+    }
+}
+
+/// A point next to the eye, on no plane that a scene is likely to have.
+fn beside_eye(camera: &Camera) -> DVec3 {
+    let [right, up, forward] = camera.basis();
+    let hair = camera.near * 1e-6;
+    camera.eye + (forward + right * 0.389_1 + up * 0.217_3) * hair
+}

@@ -1,0 +1,13 @@
+//! Parts of soft shadow volumes: silhouette edges with their hard planes, lights
+//! as shaders project on them, wedges as draws, and coverage tables.
+
+pub(crate) mod count;
+pub(crate) mod covering;
+pub(crate) mod edges;
+pub(crate) mod halves;
+pub(crate) mod light;
+pub(crate) mod light_image;
+mod outlines;
+pub(crate) mod split_tables;
+pub(crate) mod table;
+pub(crate) mod wedges;

@@ -1,0 +1,4 @@
+//! What the picture should have been, and how far off one is.
+
+pub mod metrics;
+pub mod oracle;

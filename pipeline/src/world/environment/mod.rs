@@ -1,0 +1,234 @@
+//! Environment lighting: a map of the light that arrives from far away in every
+//! direction, and area lights that stand for it (Annen et al. 2008, §4.2).
+//!
+//! A map is read (`read`), spread over the six faces of a cube (`layout`) and
+//! kept as whole numbers of energy ([`cube`]). [`fit`] takes rectangles of energy
+//! out of the faces; what it leaves is the residual. Since energy is counted in
+//! integers, lights and residual sum to the map exactly, in each colour.
+//! [`scene::environment`](crate::world::scene::environment) puts the rectangles into a scene as lights.
+//!
+//! # Units and directions
+//!
+//! Maps hold linear RGB radiance; energy is radiance times solid angle. A light
+//! of energy E has the colour E/π, since a colour of 1 shades a facing white
+//! surface to 1 and a Lambertian reflects albedo/π. In latitude-longitude maps
+//! the top row is straight up (+y), the middle column looks along -z, and columns
+//! further right turn towards +x.
+//!
+//! ```
+//! use gnomon_pipeline::world::environment::{Environment, FitSettings};
+//! use gnomon_pipeline::world::scene::{builtin, environment::place};
+//!
+//! let sky = Environment::open("sky", Default::default())?;
+//! let fit = sky.fit(&FitSettings { lights: 30, ..FitSettings::default() })?;
+//! assert!(fit.lights.len() <= 30);
+//! let mut sum = fit.residual_energy();
+//! for light in &fit.lights {
+//!     (0..3).for_each(|c| sum[c] += light.energy[c]);
+//! }
+//! assert_eq!(sum, sky.cube.total()); // exactly
+//! let mut scene = builtin::build("creature")?;
+//! place(&mut scene, &sky, fit)?;
+//! assert!(scene.lights.len() <= 30);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod cube;
+mod error;
+pub mod fit;
+mod layout;
+mod placed;
+mod read;
+mod sky;
+
+use std::path::Path;
+
+pub use cube::CubeMap;
+pub use error::EnvironmentError;
+pub use fit::{AreaFit, Fit, FitSettings, LightForm, ResidualRule};
+pub use placed::{DISTANCE, PlacedEnvironment};
+
+use crate::world::warning::SceneWarning;
+use layout::Picture;
+
+/// Name of the procedural map, which needs no file.
+pub const SKY: &str = "sky";
+
+/// How a map becomes an environment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapSettings {
+    /// Most texels along a side of a cube face; coarser maps have fewer.
+    pub side: usize,
+    /// Turn about +y in degrees, counter-clockwise seen from above.
+    pub turn: f64,
+    /// Factor of all radiance, above 0.
+    pub brightness: f64,
+}
+
+impl Default for MapSettings {
+    fn default() -> Self {
+        Self {
+            side: 128,
+            turn: 0.0,
+            brightness: 1.0,
+        }
+    }
+}
+
+/// A map, ready to be fitted or sampled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Environment {
+    /// What it was called by.
+    pub name: String,
+    /// Its energy.
+    pub cube: CubeMap,
+    /// Texels that were mended, energy that was lost.
+    pub warnings: Vec<SceneWarning>,
+}
+
+impl Environment {
+    /// The map called `name`: `sky`, a `.hdr` or `.exr` file, or a folder of six.
+    ///
+    /// # Errors
+    /// It cannot be read, has no known layout, or no light in it.
+    pub fn open(name: &str, settings: MapSettings) -> Result<Self, EnvironmentError> {
+        settings.check()?;
+        let (faces, warnings) = if name == SKY {
+            (sky::faces(settings.side, settings.turn), Vec::new())
+        } else {
+            let picture = read::open(Path::new(name))?;
+            let faces = picture.faces(settings.side, settings.turn);
+            (faces, picture.warnings)
+        };
+        Self::of_faces(name, faces, warnings, settings)
+    }
+
+    /// A latitude-longitude, cross or strip map from linear radiance, rows from
+    /// the top; see [`EnvironmentError::Layout`] for the shapes.
+    ///
+    /// # Errors
+    /// The size is of no known layout, or there is no light.
+    pub fn of_radiance(
+        name: &str,
+        size: [usize; 2],
+        texels: Vec<[f32; 3]>,
+        settings: MapSettings,
+    ) -> Result<Self, EnvironmentError> {
+        settings.check()?;
+        let picture = Picture::new(name, size, texels)?;
+        let faces = picture.faces(settings.side, settings.turn);
+        Self::of_faces(name, faces, picture.warnings, settings)
+    }
+
+    fn of_faces(
+        name: &str,
+        faces: layout::Faces,
+        warnings: Vec<SceneWarning>,
+        settings: MapSettings,
+    ) -> Result<Self, EnvironmentError> {
+        let scaled = faces.radiance.iter();
+        let scaled = scaled.map(|rgb| rgb.map(|v| v * settings.brightness));
+        let cube = CubeMap::new(faces.side, scaled.collect());
+        Ok(Self {
+            name: name.to_owned(),
+            cube: cube.ok_or_else(|| EnvironmentError::Dark {
+                name: name.to_owned(),
+            })?,
+            warnings,
+        })
+    }
+
+    /// Fits area lights.
+    ///
+    /// # Errors
+    /// As [`fit::fit`].
+    pub fn fit(&self, settings: &FitSettings) -> Result<Fit, EnvironmentError> {
+        fit::fit(&self.name, &self.cube, settings)
+    }
+}
+
+impl MapSettings {
+    fn check(&self) -> Result<(), EnvironmentError> {
+        let bad = |what, value, valid| EnvironmentError::Setting { what, value, valid };
+        if !(1..=1024).contains(&self.side) {
+            return Err(bad("side", self.side as f64, "1 to 1024 texels"));
+        }
+        if !self.turn.is_finite() {
+            return Err(bad("turn", self.turn, "a finite number of degrees"));
+        }
+        if !(self.brightness > 0.0 && self.brightness.is_finite()) {
+            return Err(bad("brightness", self.brightness, "above 0 and finite"));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(size: [usize; 2], texels: Vec<[f32; 3]>) -> Result<Environment, EnvironmentError> {
+        Environment::of_radiance("test", size, texels, MapSettings::default())
+    }
+
+    #[test]
+    fn one_texel_is_the_same_light_from_everywhere() {
+        let all = of([1, 1], vec![[0.25, 0.5, 1.0]]).unwrap();
+        assert_eq!(all.cube.side(), 1);
+        let whole = 4.0 * std::f64::consts::PI;
+        let total = all.cube.energy(all.cube.total());
+        for (energy, radiance) in total.into_iter().zip([0.25, 0.5, 1.0]) {
+            assert!((energy - whole * radiance).abs() < 1e-9, "{energy}");
+        }
+        let fit = all.fit(&FitSettings::default()).unwrap();
+        assert_eq!(fit.lights.len(), 6);
+        assert_eq!(fit.residual_energy(), [0; 3]);
+    }
+
+    #[test]
+    fn maps_without_light_are_refused() {
+        let message = of([2, 1], vec![[0.0; 3]; 2]).unwrap_err().to_string();
+        assert!(message.contains("no light"), "{message}");
+        let message = of([2, 1], vec![[f32::NAN; 3]; 2]).unwrap_err().to_string();
+        assert!(message.contains("no light"), "{message}");
+    }
+
+    #[test]
+    fn texels_that_are_no_radiance_are_mended_and_counted() {
+        let mut texels = vec![[1.0; 3]; 32];
+        texels[3] = [f32::NAN, 1.0, 1.0];
+        texels[9] = [-2.0, 1.0, -1.0];
+        texels[20] = [f32::INFINITY, 7.0, 1.0];
+        let mended = of([8, 4], texels).unwrap();
+        let codes: Vec<_> = mended.warnings.iter().map(|w| (w.code, w.count)).collect();
+        let expected = [
+            ("environment-nan", 1),
+            ("environment-negative", 1),
+            ("environment-infinite", 1),
+        ];
+        assert_eq!(codes, expected);
+        let brightest = mended.cube.radiance().fold(0.0, |m, rgb| rgb[0].max(m));
+        assert!((brightest - 7.0).abs() < 1e-9, "{brightest}");
+    }
+
+    #[test]
+    fn settings_and_sizes_are_checked() {
+        let wrong = of([3, 5], vec![[1.0; 3]; 15]).unwrap_err().to_string();
+        assert!(wrong.contains("3x5") && wrong.contains("2:1"), "{wrong}");
+        let few = of([4, 2], vec![[1.0; 3]; 7]).unwrap_err().to_string();
+        assert!(few.contains("7 texels"), "{few}");
+        for (side, turn, brightness) in [
+            (0, 0.0, 1.0),
+            (8, f64::NAN, 1.0),
+            (8, 0.0, 0.0),
+            (8, 0.0, -1.0),
+        ] {
+            let settings = MapSettings {
+                side,
+                turn,
+                brightness,
+            };
+            assert!(Environment::open(SKY, settings).is_err());
+        }
+    }
+}

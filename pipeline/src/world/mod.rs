@@ -1,0 +1,14 @@
+//! What is rendered: scenes with their meshes, lights and environment maps, and
+//! the files they come from. Knows nothing of shadows.
+
+pub mod adjacency;
+pub mod environment;
+pub mod error;
+pub mod light;
+pub mod material;
+pub mod mesh;
+pub mod obj;
+pub mod plates;
+pub mod scene;
+pub mod shape;
+pub mod warning;

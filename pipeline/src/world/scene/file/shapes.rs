@@ -1,0 +1,125 @@
+//! Meshes of a scene file: built-in primitives and OBJ files.
+
+use std::path::Path;
+
+use super::SceneFileError;
+use super::check::Source;
+use super::schema::MeshTable;
+use crate::world::mesh::Shading;
+use crate::world::obj;
+use crate::world::scene::{MaterialPart, SceneWarning};
+use crate::world::shape::{self, Shape, Terrain};
+
+/// Sides of a round primitive.
+const SEGMENTS: std::ops::RangeInclusive<u32> = 3..=4096;
+
+/// An untransformed shape, and what its file said besides.
+#[derive(Default)]
+pub(super) struct Read {
+    pub(super) shape: Shape,
+    pub(super) parts: Vec<MaterialPart>,
+    pub(super) warnings: Vec<SceneWarning>,
+}
+
+/// The shape that a table asks for at `time`, in seconds.
+pub(super) fn shape(
+    source: &Source<'_>,
+    folder: &Path,
+    table: &MeshTable,
+    time: f64,
+) -> Result<Read, SceneFileError> {
+    match table {
+        MeshTable::Obj(path) => {
+            let read = obj::load(&folder.join(path.get_ref()), Shading::Flat)
+                .map_err(|e| source.error(path.span(), e.to_string()))?;
+            Ok(Read {
+                shape: Shape::from_mesh(&read.mesh),
+                parts: read.parts,
+                warnings: read.warnings,
+            })
+        }
+        primitive => Ok(Read {
+            shape: self::primitive(source, primitive, time)?,
+            ..Read::default()
+        }),
+    }
+}
+
+fn primitive(source: &Source<'_>, table: &MeshTable, time: f64) -> Result<Shape, SceneFileError> {
+    Ok(match table {
+        MeshTable::Obj(_) => Shape::default(),
+        MeshTable::Plane { half } => shape::plane(source.positive("half", half)?, 0.0),
+        MeshTable::Box { size } => {
+            let extent = source.finite("size", size)?;
+            if extent.min_element() <= 0.0 {
+                let message = format!("size is {extent:?}; valid are three numbers above 0");
+                return Err(source.error(size.span(), message));
+            }
+            shape::cuboid(glam::DVec3::ZERO, extent)
+        }
+        MeshTable::Cylinder {
+            segments,
+            radius,
+            height,
+        } => shape::cylinder(
+            source.count("segments", segments, SEGMENTS)?,
+            source.positive("radius", radius)?,
+            0.0,
+            source.positive("height", height)?,
+        ),
+        MeshTable::Sphere {
+            subdivisions,
+            radius,
+        } => shape::icosphere(
+            source.count("subdivisions", subdivisions, 0..=7)?,
+            source.positive("radius", radius)?,
+            glam::DVec3::ZERO,
+        ),
+        MeshTable::Capsule { from, to, radius } => {
+            let (start, end) = (source.finite("from", from)?, source.finite("to", to)?);
+            if start == end {
+                return Err(
+                    source.error(to.span(), "to equals from; valid is any other point".into())
+                );
+            }
+            let radius = source.positive("radius", radius)?;
+            shape::capsule(start, end, radius, radius, 24, 6)
+        }
+        MeshTable::TorusKnot {
+            p,
+            q,
+            ring,
+            minor,
+            tube,
+            along,
+            around,
+        } => shape::torus_knot(
+            source.count("p", p, 1..=16)?,
+            source.count("q", q, 0..=16)?,
+            source.positive("ring", ring)?,
+            source.number("minor", minor)?,
+            source.positive("tube", tube)?,
+            source.count("along", along, SEGMENTS)?,
+            source.count("around", around, SEGMENTS)?,
+            glam::DVec3::ZERO,
+        ),
+        MeshTable::Terrain {
+            cells,
+            half,
+            amplitude,
+        } => shape::terrain(Terrain {
+            cells: source.count("cells", cells, 1..=1024)?,
+            half: source.positive("half", half)?,
+            frequency: 0.5,
+            octaves: 7,
+            amplitude: source.number("amplitude", amplitude)?,
+        }),
+        MeshTable::Creature { phase, walk } => {
+            let mut angle = source.number("phase", phase)?;
+            if let Some(walk) = walk {
+                angle += source.number("walk", walk)? * time;
+            }
+            Shape::merged(shape::creature(angle))
+        }
+    })
+}

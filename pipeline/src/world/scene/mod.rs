@@ -1,0 +1,131 @@
+//! Scenes: what is drawn, what casts, what receives, from where it is seen.
+
+pub mod builtin;
+mod camera;
+pub mod environment;
+pub mod file;
+mod frame_model;
+mod open;
+mod placed;
+mod source;
+
+use std::sync::Arc;
+
+pub use camera::{Camera, EyeRays};
+pub use frame_model::{frame_model, load_and_frame};
+pub use open::{SceneError, open};
+pub use placed::PlacedError;
+pub use source::SceneSource;
+
+pub use crate::world::material::{Material, MaterialPart};
+pub use crate::world::warning::SceneWarning;
+
+use crate::world::environment::PlacedEnvironment;
+use crate::world::light::Light;
+use crate::world::mesh::Mesh;
+
+/// A complete scene: everything in world space, nothing left to look up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Name for reports and file names.
+    pub name: String,
+    /// The eye.
+    pub camera: Camera,
+    /// At least one light.
+    pub lights: Vec<Light>,
+    /// Objects in drawing order.
+    pub objects: Vec<Object>,
+    /// Linear RGB light that reaches everything, shadowed or not.
+    pub ambient: [f32; 3],
+    /// Linear RGB where no surface is seen.
+    pub background: [f32; 3],
+    /// Image width and height asked for by a scene file.
+    pub size: Option<[u32; 2]>,
+    /// What the lights stand for, if they were fitted to a map.
+    pub environment: Option<Arc<PlacedEnvironment>>,
+    /// What was found amiss when the scene was made, without stopping it.
+    pub warnings: Vec<SceneWarning>,
+}
+
+impl Scene {
+    /// A nameless scene with a dim ambient light on a dark background.
+    pub fn new(camera: Camera, lights: Vec<Light>, objects: Vec<Object>) -> Self {
+        Self {
+            name: String::new(),
+            camera,
+            lights,
+            objects,
+            ambient: [0.15; 3],
+            background: [0.05, 0.06, 0.08],
+            size: None,
+            environment: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Objects that cast shadows, in drawing order.
+    pub fn casters(&self) -> impl Iterator<Item = &Object> {
+        self.objects.iter().filter(|o| o.casts)
+    }
+
+    /// Triangles of all objects.
+    pub fn triangle_count(&self) -> usize {
+        self.objects.iter().map(|o| o.mesh.triangles().len()).sum()
+    }
+}
+
+/// A mesh with a material and its part in shadowing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Name for messages and reports.
+    pub name: String,
+    /// World-space geometry.
+    pub mesh: Arc<Mesh>,
+    /// Whether it casts shadow.
+    pub casts: bool,
+    /// Whether shadow falls on it.
+    pub receives: bool,
+    /// How it is shaded.
+    pub material: Material,
+    /// Triangles that are shaded differently; each is in one part at most.
+    pub parts: Vec<MaterialPart>,
+}
+
+impl Object {
+    /// An object that casts and receives.
+    pub fn new(name: impl Into<String>, mesh: Mesh, material: Material) -> Self {
+        Self {
+            name: name.into(),
+            mesh: Arc::new(mesh),
+            casts: true,
+            receives: true,
+            material,
+            parts: Vec::new(),
+        }
+    }
+
+    /// All triangles by material: those of no part first, then part after part.
+    pub fn painted(&self) -> Vec<MaterialPart> {
+        let count = self.mesh.triangles().len() as u32;
+        let mut own = vec![true; count as usize];
+        for &t in self.parts.iter().flat_map(|p| &p.triangles) {
+            if let Some(own) = own.get_mut(t as usize) {
+                *own = false;
+            }
+        }
+        let rest = MaterialPart {
+            material: self.material,
+            triangles: (0..count).filter(|&t| own[t as usize]).collect(),
+        };
+        std::iter::once(rest)
+            .chain(self.parts.iter().cloned())
+            .filter(|p| !p.triangles.is_empty())
+            .collect()
+    }
+
+    /// The same object, casting nothing (sheets such as floors).
+    pub fn receiver_only(mut self) -> Self {
+        self.casts = false;
+        self
+    }
+}

@@ -1,0 +1,119 @@
+//! Scenes by name and time: a still scene is the same at all times.
+//!
+//! Each moment is made afresh from what was read, and from nothing of other
+//! moments: so a frame of an animation is the still picture of its time, to the
+//! bit.
+
+use std::path::{Path, PathBuf};
+
+use super::builtin::{self, BuiltinScene};
+use super::file::{self, Moment};
+use super::{Scene, SceneError, load_and_frame};
+use crate::world::scene::environment::{EnvironmentRequest, FittedMaps};
+
+/// Where scenes come from.
+#[derive(Clone, Debug)]
+pub struct SceneSource {
+    kind: Kind,
+    environment: Option<EnvironmentRequest>,
+    maps: FittedMaps,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Builtin(&'static BuiltinScene),
+    File { path: PathBuf, text: String },
+    Model(Box<Scene>),
+}
+
+impl SceneSource {
+    /// The source called `name`: a `.toml` scene file, an `.obj` model to be
+    /// framed, or else a built-in name.
+    ///
+    /// # Errors
+    /// The file cannot be read, or there is no built-in scene of that name.
+    pub fn open(name: &str) -> Result<Self, SceneError> {
+        let path = Path::new(name);
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let kind = match extension.to_str() {
+            Some("toml") => Kind::File {
+                path: path.to_owned(),
+                text: file::read(path)?,
+            },
+            Some("obj") => Kind::Model(Box::new(load_and_frame(path)?)),
+            _ => Kind::Builtin(builtin::find(name)?),
+        };
+        Ok(Self {
+            kind,
+            environment: None,
+            maps: FittedMaps::default(),
+        })
+    }
+
+    /// Lights every scene by `environment` alone, whatever lights it has.
+    #[must_use]
+    pub fn with_environment(mut self, environment: Option<EnvironmentRequest>) -> Self {
+        self.environment = environment;
+        self
+    }
+
+    /// The scene at `time`, in seconds.
+    ///
+    /// # Errors
+    /// A scene file or its meshes make no scene, or the environment is wrong.
+    pub fn at(&mut self, time: f64) -> Result<Scene, SceneError> {
+        let mut scene = match &self.kind {
+            Kind::File { path, text } => {
+                let mut moment = Moment {
+                    time,
+                    environment: self.environment.as_ref(),
+                    maps: &mut self.maps,
+                };
+                return Ok(file::named(path, text, &mut moment)?);
+            }
+            Kind::Builtin(entry) => entry.at(time),
+            Kind::Model(scene) => (**scene).clone(),
+        };
+        if let Some(environment) = &self.environment {
+            environment.light(&mut scene, &mut self.maps)?;
+        }
+        Ok(scene)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_do_not_depend_on_each_other() {
+        let mut source = SceneSource::open("walk").unwrap();
+        let [early, late] = [0.25, 1.5].map(|t| source.at(t).unwrap());
+        assert!(early != late && source.at(0.25).unwrap() == early);
+        assert!(SceneSource::open("walk").unwrap().at(1.5).unwrap() == late);
+        let mut still = SceneSource::open("cylinder").unwrap();
+        assert!(still.at(0.0).unwrap() == still.at(9.0).unwrap());
+    }
+
+    #[test]
+    fn an_environment_is_read_once_and_lights_every_moment() {
+        let request = EnvironmentRequest::new("sky");
+        let mut source = SceneSource::open("walk")
+            .unwrap()
+            .with_environment(Some(request));
+        let [a, b] = [0.0, 0.5].map(|t| source.at(t).unwrap());
+        assert!(a.lights.len() > 20 && a.lights.len() == b.lights.len());
+        assert!(a.environment.unwrap().fit == b.environment.unwrap().fit);
+        let wrong = EnvironmentRequest::new("nowhere.hdr");
+        let mut source = SceneSource::open("walk")
+            .unwrap()
+            .with_environment(Some(wrong));
+        assert!(
+            source
+                .at(0.0)
+                .unwrap_err()
+                .to_string()
+                .contains("nowhere.hdr")
+        );
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gnomon_raster::{Gpu, GpuConfig, TextureDescriptor, TextureId};
+use gnomon_raster::{Gpu, GpuConfig, TextureDescriptor};
 use thiserror::Error;
 
 use crate::comparison::{CompareError, Directions, EnvironmentReference, Reference, ReferenceKind};
@@ -15,7 +15,7 @@ use crate::oracle::area::VisibilityImage;
 use crate::oracle::cache::OracleCache;
 use crate::render::{RenderError, RenderSettings, Rendered, render};
 use crate::scene::{Scene, builtin};
-use crate::technique::{Frame, Params, Technique, TechniqueError, TextureSource, find};
+use crate::technique::{Frame, Params, Technique, TechniqueError, find};
 
 /// How claims are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -289,13 +289,9 @@ impl Lab {
         set: &[&str],
     ) -> Result<Vec<TextureDescriptor>, ReproduceError> {
         let (technique, params) = parsed(technique, set)?;
-        let mut gpu = Gpu::new(self.settings.gpu)?;
-        let mut noted = Noted {
-            gpu: &mut gpu,
-            made: Vec::new(),
-        };
-        technique.frame(scene, self.size(), &params, &mut noted)?;
-        Ok(noted.made)
+        let frame = technique.frame(scene, self.size(), &params)?;
+        let made = frame.recording.textures().iter();
+        Ok(made.map(|t| t.descriptor().clone()).collect())
     }
 
     /// A frame and the GPU that can run it.
@@ -306,8 +302,9 @@ impl Lab {
         set: &[&str],
     ) -> Result<(Gpu, Frame), ReproduceError> {
         let (technique, params) = parsed(technique, set)?;
+        let frame = technique.frame(scene, self.size(), &params)?;
         let mut gpu = Gpu::new(self.settings.gpu)?;
-        let frame = technique.frame(scene, self.size(), &params, &mut gpu)?;
+        gpu.load(&frame.recording)?;
         Ok((gpu, frame))
     }
 }
@@ -334,26 +331,4 @@ pub(super) fn parsed(
 ) -> Result<(&'static dyn Technique, Params), TechniqueError> {
     let technique = find(technique)?;
     Ok((technique, Params::parse(technique, set)?))
-}
-
-/// Passes on what is made, and notes it.
-struct Noted<'a> {
-    gpu: &'a mut Gpu,
-    made: Vec<TextureDescriptor>,
-}
-
-impl TextureSource for Noted<'_> {
-    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
-        self.made.push(desc.clone());
-        self.gpu.create_texture(desc)
-    }
-
-    fn write(
-        &mut self,
-        texture: TextureId,
-        image: gnomon_raster::Subresource,
-        texels: &[[f32; 4]],
-    ) -> Result<(), gnomon_raster::Error> {
-        self.gpu.write(texture, image, texels)
-    }
 }

@@ -8,7 +8,7 @@ use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps};
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::scene::Scene;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 
 /// The registry's entry.
 pub(crate) struct Pcf;
@@ -62,7 +62,6 @@ impl Technique for Pcf {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let taps = taps(self.name(), params)?;
         let cubic = params.get(KERNEL.name) == "bicubic";
@@ -80,7 +79,6 @@ impl Technique for Pcf {
             margin,
         };
         mapped.frame(
-            textures,
             |light| Sources::centre(self.name(), scene, light),
             |look_up| match cubic {
                 true => look_up.whole(CubicTaps).stage(),

@@ -22,7 +22,7 @@ use super::horizon::HORIZON;
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::scene::Scene;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 
 /// The registry's entry.
 pub(crate) struct Pcss;
@@ -105,7 +105,6 @@ impl Technique for Pcss {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let search = self.points(params, SEARCH, 0)?;
         let filter = self.points(params, FILTER, 1)?;
@@ -118,7 +117,6 @@ impl Technique for Pcss {
             margin: MARGIN,
         };
         mapped.frame(
-            textures,
             |light| Sources::centre(self.name(), scene, light),
             |look_up| {
                 let light_half = look_up.light_half();

@@ -6,7 +6,7 @@ use gnomon_shaders::shadow_maps::BoxTaps;
 use super::mapped::{self, Mapped, Margin, Sources};
 use super::passes;
 use crate::scene::Scene;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 
 /// The registry's entry.
 pub(crate) struct ShadowMap;
@@ -42,7 +42,6 @@ impl Technique for ShadowMap {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let mapped = Mapped {
             name: self.name(),
@@ -52,7 +51,6 @@ impl Technique for ShadowMap {
             margin: Margin::ONE_TEXEL,
         };
         mapped.frame(
-            textures,
             |light| Sources::centre(self.name(), scene, light),
             |look_up| look_up.whole(BoxTaps(1)).stage(),
         )

@@ -16,7 +16,7 @@ use super::passes;
 use crate::light::HardLight;
 use crate::light_samples::light_points;
 use crate::scene::Scene;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 
 /// The registry's entry.
 pub(crate) struct ShadowMapsN;
@@ -77,7 +77,6 @@ impl Technique for ShadowMapsN {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let side = mapped::square_side(self.name(), params, MAPS)?;
         let mapped = Mapped {
@@ -88,7 +87,6 @@ impl Technique for ShadowMapsN {
             margin: Margin::ONE_TEXEL,
         };
         mapped.frame(
-            textures,
             |light| self.points(scene, light, side, params),
             |look_up| look_up.share(BoxTaps(1)).stage(),
         )

@@ -9,13 +9,13 @@ pub(super) mod screen;
 pub(super) mod shape;
 pub(super) mod volume;
 
-use gnomon_raster::{Format, LoadOp, RenderPass, TextureDescriptor, TextureId};
+use gnomon_raster::{Format, LoadOp, Recording, RenderPass, TextureDescriptor, TextureId};
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
 use super::passes::{SceneDraws, Targets};
 use super::visibility::{VisibilityTexture, attachment};
-use crate::technique::{ParamInfo, Params, TechniqueError, TextureSource};
+use crate::technique::{ParamInfo, Params, TechniqueError};
 
 pub(super) const INTERPOLATION: ParamInfo = ParamInfo {
     name: "interpolation",
@@ -42,10 +42,10 @@ pub(super) fn interpolation(params: &Params) -> Interpolation {
 /// is full light.
 pub(super) fn light_intensity(
     [width, height]: [u32; 2],
-    textures: &mut dyn TextureSource,
+    recording: &mut Recording,
 ) -> Result<TextureId, TechniqueError> {
     let desc = TextureDescriptor::d2("light intensity", Format::R16Sint, width, height);
-    Ok(textures.create(&desc)?)
+    Ok(recording.create(&desc)?)
 }
 
 /// The buffer as visibility: clamped to 0..=255 (paper I, §4), over 255.

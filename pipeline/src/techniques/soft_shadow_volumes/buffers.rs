@@ -1,12 +1,14 @@
 //! Textures that visibility is added up in, as floats or as 6 of 8 bits.
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor, TextureId};
+use gnomon_raster::{
+    Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
+};
 use gnomon_shaders::soft_volumes::Resolve;
 use gnomon_shaders::transform::FullScreen;
 
 use super::{BUFFER, COPY_BACK};
-use crate::technique::{Params, TechniqueError, TextureSource};
+use crate::technique::{Params, TechniqueError};
 use crate::techniques::soft::covering::light_image;
 use crate::techniques::visibility::{VisibilityTexture, attachment, binding, full_screen};
 
@@ -26,10 +28,10 @@ impl Buffers {
     pub(super) fn create(
         [width, height]: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let mut create = |label: &str, format| {
-            textures.create(&TextureDescriptor::d2(label, format, width, height))
+            recording.create(&TextureDescriptor::d2(label, format, width, height))
         };
         let bytes = params.get(BUFFER.name) == "rgba8x2";
         let aside = !bytes && params.get(COPY_BACK.name) == "on";

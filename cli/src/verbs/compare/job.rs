@@ -8,7 +8,7 @@ use gnomon_pipeline::render::RenderSettings;
 use gnomon_pipeline::scene::{Scene, SceneSource};
 use gnomon_pipeline::technique::{Params, Technique, find};
 
-use crate::args::{CompareArgs, EntryArg};
+use super::args::{CompareArgs, EntryArg};
 use crate::error::CliError;
 use crate::output::files;
 use crate::verbs;

@@ -4,7 +4,7 @@ use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::Scene;
 use gnomon_pipeline::technique::{Params, Technique, find};
 
-use crate::args::DemoArgs;
+use super::args::DemoArgs;
 use crate::error::CliError;
 use crate::output::json::RenderJob;
 use crate::output::progress::Progress;

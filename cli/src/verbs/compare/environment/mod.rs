@@ -13,8 +13,8 @@ use gnomon_pipeline::environment::{EnvironmentRequest, PlacedEnvironment};
 use gnomon_pipeline::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::scene::{Scene, SceneSource};
 
+use super::args::CompareArgs;
 use super::job::{self, DEFAULT_SIZE, Entry};
-use crate::args::CompareArgs;
 use crate::error::CliError;
 use crate::output::files::{self, Batch};
 use crate::output::json::{FileDocument, worker_threads};

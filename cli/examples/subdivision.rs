@@ -1,14 +1,12 @@
 //! How far each way of finding and storing coverage drifts when silhouette edges are
 //! cut into ever more collinear pieces, which changes nothing in truth.
 //!
-//! `cargo run --release -p gnomon-pipeline --example subdivision -- FOLDER`
+//! `cargo run --release -p gnomon --example subdivision -- FOLDER`
 //!
-//! writes `subdivision.csv` and `subdivision.svg` into FOLDER: RMS and largest change
+//! writes `subdivision.csv` and plots of it into FOLDER: RMS and largest change
 //! of visibility on the parallel plates from whole edges to m pieces each.
 
 #![allow(clippy::print_stdout, reason = "a measurement prints")]
-
-mod plot;
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -16,17 +14,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
+use gnomon::draw::plot;
+use gnomon_pipeline::chart::{Axis, Chart, Series};
 use gnomon_pipeline::light::LightShape;
 use gnomon_pipeline::mesh::Shading;
 use gnomon_pipeline::render::{RenderSettings, render};
 use gnomon_pipeline::scene::{Scene, builtin};
 use gnomon_pipeline::shape::bevelled_plate_in_pieces;
 use gnomon_pipeline::technique::{Params, find};
-use plot::{Axis, Plot, Series};
 
 const SIZE: [u32; 2] = [240, 160];
 const PIECES: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// The least change that the plot shows.
+/// What smaller changes are shown as.
 const FLOOR: f64 = 1e-8;
 
 /// A back end: what it is called, technique, settings, and whether under a disc.
@@ -74,10 +73,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let write = |name: &str, text: String| std::fs::write(Path::new(&folder).join(name), text);
     write("subdivision.csv", csv(&curves))?;
-    write(
-        "subdivision.svg",
-        plot::svg(&[plot_of(&curves, 1, "largest"), plot_of(&curves, 0, "RMS")]),
-    )?;
+    for chart in [chart(&curves, 1, "largest"), chart(&curves, 0, "RMS")] {
+        write(&format!("{}.svg", chart.name), plot::svg(&chart))?;
+    }
     Ok(())
 }
 
@@ -132,19 +130,19 @@ fn csv(curves: &[(&str, Vec<[f64; 2]>)]) -> String {
     text
 }
 
-fn plot_of(curves: &[(&str, Vec<[f64; 2]>)], figure: usize, what: &str) -> Plot {
+fn chart(curves: &[(&str, Vec<[f64; 2]>)], figure: usize, what: &str) -> Chart {
     let series = |(name, drifts): &(&str, Vec<[f64; 2]>)| {
         let pieces = PIECES[1..].iter().map(|m| f64::from(*m));
-        let points = pieces.zip(drifts).map(|(m, d)| (m, Some(d[figure])));
-        Series {
-            name: (*name).to_owned(),
-            points: points.collect(),
-        }
+        let points = pieces
+            .zip(drifts)
+            .map(|(m, drift)| [m, drift[figure].max(FLOOR)]);
+        Series::line(name, points.collect())
     };
-    Plot {
+    Chart {
+        name: format!("subdivision-{}", what.to_lowercase()),
         title: format!("{what} change of visibility over pieces of each edge"),
-        axis: Axis::Doublings,
-        floor: FLOOR,
+        x: Axis::log2("pieces"),
+        y: Axis::log10("change, 1e-8 where it is less"),
         series: curves.iter().map(series).collect(),
     }
 }

@@ -1,6 +1,7 @@
 //! Pictures that explain a render, one file each.
 
 mod env_lights;
+mod kind;
 mod overdraw;
 mod sides;
 mod silhouette;
@@ -15,8 +16,8 @@ use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::scene_wedges::SceneWedges;
 use gnomon_pipeline::world::scene::Scene;
 
-use crate::args::OverlayKind;
 use crate::draw::Picture;
+pub(crate) use kind::OverlayKind;
 
 /// What overlays are drawn from.
 #[derive(Clone, Copy)]

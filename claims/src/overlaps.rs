@@ -1,7 +1,7 @@
 //! How many penumbra wedges cover a pixel's surface: a histogram from what draws
 //! wrote.
 
-use gnomon_raster::{AccessObserver, BlockAccess};
+use gnomon_raster::{AccessBatch, AccessObserver, BlockAccess, Wants};
 
 use super::{Lab, ReproduceError};
 use gnomon_pipeline::world::scene::Scene;
@@ -9,6 +9,8 @@ use gnomon_pipeline::world::scene::Scene;
 /// Wedges by pixel.
 pub(super) struct Overlaps {
     columns: usize,
+    /// Which passes draw wedges.
+    wedges: Vec<bool>,
     /// Writes of each pixel by the wedges of the group that is being drawn.
     writes: Vec<u32>,
 }
@@ -20,11 +22,13 @@ impl Overlaps {
     pub(super) fn measure(lab: &Lab, scene: &Scene, set: &[&str]) -> Result<Self, ReproduceError> {
         let (mut gpu, frame) = lab.frame(scene, "soft-shadow-volumes-optimised", set)?;
         let [width, height] = lab.size().map(|s| s as usize);
+        let passes = frame.recording.list.passes.iter();
         let mut counted = Self {
             columns: width,
+            wedges: passes.map(|p| p.label == "wedges").collect(),
             writes: vec![0; width * height],
         };
-        gpu.submit_observed(&frame.recording.list, &mut counted)?;
+        gpu.submit_observed(&frame.recording.list, Wants::default(), &mut counted)?;
         Ok(counted)
     }
 
@@ -54,9 +58,9 @@ impl Overlaps {
 }
 
 impl AccessObserver for Overlaps {
-    fn render_pass(&mut self, _: usize, label: &str, accesses: &[BlockAccess]) {
-        if label == "wedges" {
-            accesses.iter().for_each(|a| self.count(a));
+    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
+        if self.wedges.get(pass) == Some(&true) {
+            batch.blocks.iter().for_each(|a| self.count(a));
         }
     }
 }
@@ -69,6 +73,7 @@ mod tests {
     fn accesses_are_counted_by_pixel() {
         let mut counted = Overlaps {
             columns: 10,
+            wedges: vec![false, true],
             writes: vec![0; 100],
         };
         let mut access = BlockAccess {
@@ -76,8 +81,9 @@ mod tests {
             ..BlockAccess::default()
         };
         access.color_write[0] = 0b111 | 1 << 9; // x 8, 9 and outside; x 9, y 1
-        counted.render_pass(0, "quads", &[access]);
-        counted.render_pass(1, "wedges", &[access, access]);
+        counted.batch(0, &AccessBatch::new(&[access]));
+        counted.batch(1, &AccessBatch::new(&[access]));
+        counted.batch(1, &AccessBatch::new(&[access]));
         assert_eq!(counted.histogram(), [97, 0, 3]);
         assert_eq!((counted.writes[8], counted.writes[19]), (2, 2));
     }

@@ -5,7 +5,8 @@ use gnomon_pipeline::technique::{Frame, Params};
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::world::scene::builtin;
 use gnomon_raster::{
-    AccessBatch, AccessObserver, BlockAccess, Gpu, GpuConfig, PassReport, SimdLevel, Wants,
+    AccessBatch, AccessObserver, BlockAccess, Gpu, GpuConfig, PassReport, SimdLevel, SubmitReport,
+    Subresource, Wants,
 };
 
 fn frame(scene: &str, technique: &str, size: [u32; 2]) -> Frame {
@@ -32,7 +33,6 @@ struct Stream {
     /// FNV-1a of all accesses, in order.
     hash: u64,
     accesses: u64,
-    largest: usize,
     most_batches: usize,
     passes: usize,
 }
@@ -42,7 +42,6 @@ impl AccessObserver for Stream {
         assert_eq!(pass, self.passes, "passes come one after the other");
         assert!(!batch.blocks.is_empty());
         self.batches += 1;
-        self.largest = self.largest.max(batch.blocks.len());
         for access in batch.blocks {
             if let Some(last) = &self.last {
                 assert!(place(last) < place(access), "{last:?} before {access:?}");
@@ -89,14 +88,34 @@ impl Stream {
     }
 }
 
+/// Results of a frame, as bytes.
+fn results(gpu: &Gpu, frame: &Frame) -> Vec<Vec<u8>> {
+    let image = Subresource::default();
+    let read = |(_, id)| gpu.texture(id).unwrap().read_packed(image).unwrap();
+    frame.recording.outputs().map(read).collect()
+}
+
+fn unobserved(frame: &Frame, config: GpuConfig) -> (Vec<Vec<u8>>, SubmitReport) {
+    let mut gpu = Gpu::new(config).unwrap();
+    gpu.load(&frame.recording).unwrap();
+    let report = gpu.submit(&frame.recording.list).unwrap();
+    (results(&gpu, frame), report)
+}
+
+/// What was observed; results and counters are those of nobody looking.
 fn observed(frame: &Frame, config: GpuConfig) -> Stream {
     let mut gpu = Gpu::new(config).unwrap();
     gpu.load(&frame.recording).unwrap();
     let mut stream = Stream::default();
     let wants = Wants { depth_ranges: true };
     let list = &frame.recording.list;
-    gpu.submit_observed(list, wants, &mut stream).unwrap();
+    let report = gpu.submit_observed(list, wants, &mut stream).unwrap();
     assert_eq!(stream.passes, list.passes.len());
+    let (pictures, plain) = unobserved(frame, config);
+    assert!(results(&gpu, frame) == pictures, "{config:?}");
+    for (pass, other) in report.passes.iter().zip(&plain.passes) {
+        assert_eq!(pass.draws, other.draws, "{config:?}");
+    }
     stream
 }
 

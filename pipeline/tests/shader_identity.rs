@@ -74,13 +74,19 @@ fn small(technique: &dyn Technique) -> Vec<String> {
         .collect()
 }
 
+/// Whether a word can be set: neither a placeholder nor a size that only takes time.
+fn is_settable(word: &str) -> bool {
+    let large = word.parse::<u32>().is_ok_and(|n| n > 64);
+    !large && !word.contains(|c: char| c.is_uppercase() || c == ' ')
+}
+
 /// The defaults, and each word that a parameter takes, one at a time.
 fn settings(technique: &dyn Technique) -> Vec<Vec<String>> {
     let base = small(technique);
     let mut all = vec![base.clone()];
     for info in technique.params() {
         let words = info.valid.split('|');
-        for value in words.filter(|v| !v.contains(char::is_uppercase) && !v.contains(' ')) {
+        for value in words.filter(|v| is_settable(v)) {
             let mut set = base.clone();
             set.retain(|s| !s.starts_with(&format!("{}=", info.name)));
             set.push(format!("{}={value}", info.name));

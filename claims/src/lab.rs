@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use gnomon_raster::{Gpu, GpuConfig, TextureDescriptor, TextureId};
+use gnomon_raster::{Gpu, GpuConfig, TextureDescriptor};
 use thiserror::Error;
 
 use gnomon_pipeline::measure::comparison::{
     CompareError, Directions, EnvironmentReference, Reference, ReferenceKind,
 };
 use gnomon_pipeline::measure::render::{RenderError, RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::{Frame, Params, Technique, TechniqueError, TextureSource};
+use gnomon_pipeline::technique::{Frame, Params, Technique, TechniqueError};
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::truth::metrics::banding::Banding;
@@ -292,13 +292,9 @@ impl Lab {
         set: &[&str],
     ) -> Result<Vec<TextureDescriptor>, ReproduceError> {
         let (technique, params) = parsed(technique, set)?;
-        let mut gpu = Gpu::new(self.settings.gpu)?;
-        let mut noted = Noted {
-            gpu: &mut gpu,
-            made: Vec::new(),
-        };
-        technique.frame(scene, self.size(), &params, &mut noted)?;
-        Ok(noted.made)
+        let frame = technique.frame(scene, self.size(), &params)?;
+        let made = frame.recording.textures().iter();
+        Ok(made.map(|t| t.descriptor().clone()).collect())
     }
 
     /// A frame and the GPU that can run it.
@@ -309,8 +305,9 @@ impl Lab {
         set: &[&str],
     ) -> Result<(Gpu, Frame), ReproduceError> {
         let (technique, params) = parsed(technique, set)?;
+        let frame = technique.frame(scene, self.size(), &params)?;
         let mut gpu = Gpu::new(self.settings.gpu)?;
-        let frame = technique.frame(scene, self.size(), &params, &mut gpu)?;
+        gpu.load(&frame.recording)?;
         Ok((gpu, frame))
     }
 }
@@ -337,26 +334,4 @@ pub(super) fn parsed(
 ) -> Result<(&'static dyn Technique, Params), TechniqueError> {
     let technique = find(technique)?;
     Ok((technique, Params::parse(technique, set)?))
-}
-
-/// Passes on what is made, and notes it.
-struct Noted<'a> {
-    gpu: &'a mut Gpu,
-    made: Vec<TextureDescriptor>,
-}
-
-impl TextureSource for Noted<'_> {
-    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
-        self.made.push(desc.clone());
-        self.gpu.create_texture(desc)
-    }
-
-    fn write(
-        &mut self,
-        texture: TextureId,
-        image: gnomon_raster::Subresource,
-        texels: &[[f32; 4]],
-    ) -> Result<(), gnomon_raster::Error> {
-        self.gpu.write(texture, image, texels)
-    }
 }

@@ -24,7 +24,7 @@ impl Overlaps {
             columns: width,
             writes: vec![0; width * height],
         };
-        gpu.submit_observed(&frame.list, &mut counted)?;
+        gpu.submit_observed(&frame.recording.list, &mut counted)?;
         Ok(counted)
     }
 

@@ -108,14 +108,15 @@ fn measure_scene(
     )?;
     let mut gpu = Gpu::new(options.config)?;
     let start = Instant::now();
-    let frame = technique.frame(scene, [size; 2], &params, &mut gpu)?;
+    let frame = technique.frame(scene, [size; 2], &params)?;
+    gpu.load(&frame.recording)?;
     let build_ms = start.elapsed().as_secs_f64() * 1e3;
     let part = |i: usize| CommandList {
-        passes: vec![frame.list.passes[i].clone()],
+        passes: vec![frame.recording.list.passes[i].clone()],
     };
     let (ambient, volumes) = (part(0), part(1));
 
-    let (whole, report) = measure(&mut gpu, options, None, &frame.list)?;
+    let (whole, report) = measure(&mut gpu, options, None, &frame.recording.list)?;
     let stencil = gpu
         .texture(frame.outputs.depth_stencil)?
         .read_stencil(Subresource::default())?;

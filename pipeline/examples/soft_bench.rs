@@ -89,14 +89,15 @@ fn measure_scene(o: &Options, scene: &Scene, name: char) -> Result<String, Box<d
     let size = [o.size; 2];
     let mut gpu = Gpu::new(o.config)?;
     let start = Instant::now();
-    let frame = o.technique.frame(scene, size, &params, &mut gpu)?;
+    let frame = o.technique.frame(scene, size, &params)?;
+    gpu.load(&frame.recording)?;
     let build_ms = start.elapsed().as_secs_f64() * 1e3;
-    gpu.submit(&frame.list)?;
+    gpu.submit(&frame.recording.list)?;
     let (mut times, mut report) = (Vec::new(), SubmitReport::default());
     let mut spent = Duration::ZERO;
     while times.len() < 5 || spent < o.budget {
         let start = Instant::now();
-        report = gpu.submit(&frame.list)?;
+        report = gpu.submit(&frame.recording.list)?;
         spent += start.elapsed();
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }

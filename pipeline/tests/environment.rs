@@ -5,7 +5,7 @@ use gnomon_pipeline::measure::comparison::{
     Directions, EnvironmentReference, RadianceScore, Reference, ReferenceKind,
 };
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::{Params, TextureSource};
+use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::{self, find};
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::world::environment::{Environment, FitSettings, MapSettings, ResidualRule};
@@ -79,28 +79,6 @@ fn every_technique_draws_a_scene_under_an_environment() {
     }
 }
 
-/// Counts what a frame creates.
-struct Counted {
-    gpu: Gpu,
-    textures: usize,
-}
-
-impl TextureSource for Counted {
-    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
-        self.textures += 1;
-        self.gpu.create_texture(desc)
-    }
-
-    fn write(
-        &mut self,
-        texture: TextureId,
-        image: Subresource,
-        texels: &[[f32; 4]],
-    ) -> Result<(), gnomon_raster::Error> {
-        self.gpu.texture_mut(texture)?.write_color(image, texels)
-    }
-}
-
 /// Lights use textures in turn: tens of them need no more than a few.
 #[test]
 fn memory_does_not_grow_with_the_number_of_lights() {
@@ -129,12 +107,8 @@ fn memory_does_not_grow_with_the_number_of_lights() {
         let technique = find(name).unwrap();
         let params = Params::parse(technique, set).unwrap();
         let textures = scenes.each_ref().map(|scene| {
-            let gpu = Gpu::new(GpuConfig::default()).unwrap();
-            let mut source = Counted { gpu, textures: 0 };
-            technique
-                .frame(scene, [32, 24], &params, &mut source)
-                .unwrap();
-            source.textures
+            let frame = technique.frame(scene, [32, 24], &params).unwrap();
+            frame.recording.textures().len()
         });
         assert_eq!(textures[0], textures[1], "{name} {set:?}");
     }

@@ -39,9 +39,10 @@ fn stencil(scene: &Scene, method: &str, depth_clamp: bool) -> Vec<u8> {
         ..GpuConfig::default()
     })
     .unwrap();
-    let mut frame = technique.frame(scene, SIZE, &params, &mut gpu).unwrap();
-    set_clamp(&mut frame.list, depth_clamp);
-    gpu.submit(&frame.list).unwrap();
+    let mut frame = technique.frame(scene, SIZE, &params).unwrap();
+    set_clamp(&mut frame.recording.list, depth_clamp);
+    gpu.load(&frame.recording).unwrap();
+    gpu.submit(&frame.recording.list).unwrap();
     let image = gpu.texture(frame.outputs.depth_stencil).unwrap();
     image.read_stencil(Subresource::default()).unwrap()
 }

@@ -48,8 +48,9 @@ fn buffer_with(scene: &Scene, technique: &str, set: &[&str], config: GpuConfig) 
     let mut gpu = Gpu::new(config).unwrap();
     let found = techniques::find(technique).unwrap();
     let params = params(technique, set);
-    let frame = found.frame(scene, SIZE, &params, &mut gpu).unwrap();
-    gpu.submit(&frame.list).unwrap();
+    let frame = found.frame(scene, SIZE, &params).unwrap();
+    gpu.load(&frame.recording).unwrap();
+    gpu.submit(&frame.recording.list).unwrap();
     let VisibilityOutput::Red { texture, .. } = frame.outputs.visibility else {
         panic!("{:?}", frame.outputs.visibility);
     };

@@ -42,6 +42,16 @@ pub enum Error {
         given: usize,
         expected: usize,
     },
+    #[error("texture `{texture}`: the image takes {expected} bytes, {given} were given")]
+    ByteCount {
+        texture: String,
+        given: usize,
+        expected: usize,
+    },
+    #[error(
+        "texture `{texture}`: stored depth {bits:#010x} is not that of a float in 0..=1; the largest is 0x3f800000"
+    )]
+    StoredDepth { texture: String, bits: u32 },
     #[error(
         "render pass `{pass}` has no attachment; give it a colour or a depth-stencil attachment"
     )]

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::execute;
 use crate::geometry::{Chunk, ShadedVertices};
 use crate::observer::AccessObserver;
+use crate::recording::{RecordedTexture, Recording};
 use crate::simd::SimdLevel;
 use crate::texture::{Texture, TextureDescriptor, TextureId};
 
@@ -175,6 +176,22 @@ impl Gpu {
         let texture = Texture::new(desc)?;
         self.textures.push(texture);
         Ok(TextureId(self.textures.len() as u32 - 1))
+    }
+
+    /// Replaces all textures by those of `recording`, filled as it says: its ids are
+    /// the GPU's then, and ids from before are not to be used again.
+    ///
+    /// # Errors
+    /// As [`Gpu::create_texture`]; the textures from before are still there then.
+    pub fn load(&mut self, recording: &Recording) -> Result<(), Error> {
+        let textures = recording.textures().iter().map(RecordedTexture::build);
+        self.textures = textures.collect::<Result<_, _>>()?;
+        Ok(())
+    }
+
+    /// Ids of all textures, in the order of their creation.
+    pub fn texture_ids(&self) -> impl Iterator<Item = TextureId> + use<> {
+        (0..self.textures.len() as u32).map(TextureId)
     }
 
     /// A texture, to read it back.

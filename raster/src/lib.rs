@@ -65,6 +65,7 @@ mod geometry;
 mod gpu;
 pub mod math;
 mod observer;
+mod recording;
 pub mod shader;
 pub mod simd;
 pub mod state;
@@ -77,6 +78,7 @@ pub use error::Error;
 pub use format::Format;
 pub use gpu::{DrawReport, Gpu, GpuConfig, PassReport, SubmitReport};
 pub use observer::{AccessObserver, BlockAccess};
+pub use recording::{RecordedTexture, Recording};
 pub use simd::{F32, I32, LANES, Lanes, Mask, SimdLevel, U32};
 pub use texture::{Subresource, Texture, TextureDescriptor, TextureDimension, TextureId};
 

@@ -95,10 +95,11 @@ pub fn record(
     params: &Params,
     settings: &RenderSettings,
 ) -> Result<Heat, RenderError> {
+    let frame = technique.frame(scene, settings.size, params)?;
     let mut gpu = Gpu::new(settings.gpu)?;
-    let frame = technique.frame(scene, settings.size, params, &mut gpu)?;
+    gpu.load(&frame.recording)?;
     let mut recorder = Recorder::new(&gpu, &frame, settings.size)?;
-    gpu.submit_observed(&frame.list, &mut recorder)?;
+    gpu.submit_observed(&frame.recording.list, &mut recorder)?;
     Ok(recorder.heat)
 }
 

@@ -113,8 +113,9 @@ pub fn render(
     params: &Params,
     settings: &RenderSettings,
 ) -> Result<Rendered, RenderError> {
+    let frame = technique.frame(scene, settings.size, params)?;
     let mut gpu = Gpu::new(settings.gpu)?;
-    let frame = technique.frame(scene, settings.size, params, &mut gpu)?;
+    gpu.load(&frame.recording)?;
     let times = Times::measure(&mut gpu, &frame, settings.repeat)?;
     read_back(&gpu, scene, frame, settings.size, times)
 }
@@ -129,16 +130,16 @@ struct Times {
 impl Times {
     fn measure(gpu: &mut Gpu, frame: &Frame, repeat: u32) -> Result<Self, RenderError> {
         if repeat > 1 {
-            gpu.submit(&frame.list)?;
+            gpu.submit(&frame.recording.list)?;
         }
         let mut times = Self {
             report: SubmitReport::default(),
             frames: Vec::new(),
-            passes: vec![Vec::new(); frame.list.passes.len()],
+            passes: vec![Vec::new(); frame.recording.list.passes.len()],
         };
         for _ in 0..repeat.max(1) {
             let start = Instant::now();
-            let report = gpu.submit(&frame.list)?;
+            let report = gpu.submit(&frame.recording.list)?;
             times.frames.push(start.elapsed().as_secs_f64() * 1e3);
             for (all, pass) in times.passes.iter_mut().zip(&report.passes) {
                 all.push(pass.time.as_secs_f64() * 1e3);

@@ -81,10 +81,11 @@ pub fn measure(
     params: &Params,
     config: GpuConfig,
 ) -> Result<Measured, RenderError> {
+    let built = build(scene, size, params)?;
     let mut gpu = Gpu::new(config)?;
-    let built = build(scene, size, params, &mut gpu)?;
+    gpu.load(&built.frame.recording)?;
     let mut covered = Covered::new(&built.wedge_draws);
-    let report = gpu.submit_observed(&built.frame.list, &mut covered)?;
+    let report = gpu.submit_observed(&built.frame.recording.list, &mut covered)?;
     let depth = gpu
         .texture(built.frame.outputs.depth_stencil)?
         .read_depth(Subresource::default())?;

@@ -10,14 +10,12 @@
 //! saturate. What a value means does not depend on the format.
 
 use gnomon_raster::{
-    ColorAttachment, CommandList, DepthStencilAttachment, Format, LoadOp, RenderPass, StoreOp,
-    Subresource, TextureDescriptor, TextureId,
+    ColorAttachment, CommandList, DepthStencilAttachment, Format, LoadOp, Recording, RenderPass,
+    StoreOp, Subresource, TextureDescriptor, TextureId,
 };
 
 use super::visibility::attachment;
-use crate::technique::{
-    Frame, Outputs, ParamInfo, Params, TechniqueError, TextureSource, VisibilityOutput,
-};
+use crate::technique::{Frame, Outputs, ParamInfo, Params, TechniqueError, VisibilityOutput};
 use crate::world::scene::Scene;
 
 pub(crate) const LIGHT: ParamInfo = ParamInfo {
@@ -77,7 +75,7 @@ impl Targets {
     pub(crate) fn create(
         [width, height]: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let rgba8 = params.get(COLOR_FORMAT.name) == "rgba8";
         let color = if rgba8 {
@@ -92,8 +90,8 @@ impl Targets {
             Format::Depth24Stencil8
         };
         Ok(Self {
-            color: textures.create(&TextureDescriptor::d2("color", color, width, height))?,
-            depth_stencil: textures.create(&TextureDescriptor::d2(
+            color: recording.create(&TextureDescriptor::d2("color", color, width, height))?,
+            depth_stencil: recording.create(&TextureDescriptor::d2(
                 "depth-stencil",
                 depth,
                 width,
@@ -102,9 +100,21 @@ impl Targets {
         })
     }
 
-    pub(crate) fn frame(&self, passes: Vec<RenderPass>, visibility: VisibilityOutput) -> Frame {
-        Frame {
-            list: CommandList { passes },
+    /// The frame of `passes`, whose textures are in `recording`.
+    pub(crate) fn frame(
+        &self,
+        mut recording: Recording,
+        passes: Vec<RenderPass>,
+        visibility: VisibilityOutput,
+    ) -> Result<Frame, TechniqueError> {
+        recording.list = CommandList { passes };
+        recording.name_output("color", self.color)?;
+        recording.name_output("depth-stencil", self.depth_stencil)?;
+        if let VisibilityOutput::Red { texture, .. } = visibility {
+            recording.name_output("visibility", texture)?;
+        }
+        Ok(Frame {
+            recording,
             outputs: Outputs {
                 color: self.color,
                 depth_stencil: self.depth_stencil,
@@ -113,7 +123,7 @@ impl Targets {
             warnings: Vec::new(),
             casters: Vec::new(),
             figures: Vec::new(),
-        }
+        })
     }
 
     pub(crate) fn color(&self, load: LoadOp<[f32; 4]>) -> Vec<ColorAttachment> {

@@ -11,14 +11,14 @@ use std::sync::Arc;
 
 use glam::DVec4;
 use gnomon_raster::{
-    ColorAttachment, Draw, Format, LoadOp, RenderPipeline, Sampler, StoreOp, Subresource,
-    TextureBinding, TextureDescriptor, TextureId, VertexBuffer,
+    ColorAttachment, Draw, Format, LoadOp, Recording, RenderPipeline, Sampler, StoreOp,
+    Subresource, TextureBinding, TextureDescriptor, TextureId, VertexBuffer,
 };
 use gnomon_shaders::surface::Shadowed;
 
 use super::surface_draw::index_buffer;
 use super::view::View;
-use crate::technique::{TechniqueError, TextureSource, VisibilityOutput};
+use crate::technique::{TechniqueError, VisibilityOutput};
 
 /// World-space positions of what pixels show, relative to [`View`]'s origin: an
 /// `Rgba32Float` image; w is 1 where shadow may fall, else 0.
@@ -30,11 +30,11 @@ pub(crate) struct Positions {
 impl Positions {
     pub(crate) fn create(
         [width, height]: [u32; 2],
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let desc = TextureDescriptor::d2("positions", Format::Rgba32Float, width, height);
         Ok(Self {
-            texture: textures.create(&desc)?,
+            texture: recording.create(&desc)?,
         })
     }
 }

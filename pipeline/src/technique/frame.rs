@@ -1,17 +1,19 @@
 //! What a technique hands to the driver.
 
-use gnomon_raster::{CommandList, TextureId};
+use gnomon_raster::{Recording, TextureId};
 
 use crate::world::scene::SceneWarning;
 
 /// Something amiss that did not stop the work: code, count, message.
 pub type Warning = SceneWarning;
 
-/// Command lists and named outputs of one picture.
+/// Textures, commands and named outputs of one picture.
 #[derive(Clone)]
 pub struct Frame {
-    /// Everything to draw; may be submitted any number of times.
-    pub list: CommandList,
+    /// Everything to draw, and the textures that it is drawn with: loaded once, its
+    /// list may be submitted any number of times. Its outputs are named `color`,
+    /// `depth-stencil` and, where a texture holds it, `visibility`.
+    pub recording: Recording,
     /// Where the results are afterwards.
     pub outputs: Outputs,
     /// What was found amiss on the way.

@@ -1,13 +1,12 @@
 //! What a shadow technique is; the list of all of them is in [`crate::techniques`].
 //!
 //! A technique is a pure function from a scene and parameters to a [`Frame`]:
-//! command lists for the emulated GPU and the names of their outputs. It
-//! touches no thread, clock or file; [`crate::measure::render`] runs it.
+//! textures and commands for the emulated GPU, and the names of their outputs. It
+//! touches no GPU, thread, clock or file; [`crate::measure::render`] runs it.
 
 mod frame;
 mod params;
 
-use gnomon_raster::{Gpu, Subresource, TextureDescriptor, TextureId};
 use thiserror::Error;
 
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
@@ -16,41 +15,6 @@ pub use params::{ParamInfo, Params};
 use crate::geometry::caster::RefusedCaster;
 use crate::world::error::LightError;
 use crate::world::scene::Scene;
-
-/// Creates the textures of a frame. A [`Gpu`] is one.
-pub trait TextureSource {
-    /// Creates a texture of zeros.
-    ///
-    /// # Errors
-    /// For sizes or levels that are not possible.
-    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error>;
-
-    /// Fills an image of a colour texture, rows from the top: a look-up table.
-    ///
-    /// # Errors
-    /// There is no such image, it is not colour, or it has another size.
-    fn write(
-        &mut self,
-        texture: TextureId,
-        image: Subresource,
-        texels: &[[f32; 4]],
-    ) -> Result<(), gnomon_raster::Error>;
-}
-
-impl TextureSource for Gpu {
-    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
-        self.create_texture(desc)
-    }
-
-    fn write(
-        &mut self,
-        texture: TextureId,
-        image: Subresource,
-        texels: &[[f32; 4]],
-    ) -> Result<(), gnomon_raster::Error> {
-        self.texture_mut(texture)?.write_color(image, texels)
-    }
-}
 
 /// A way to shade a scene with shadows.
 pub trait Technique: Sync {
@@ -63,7 +27,7 @@ pub trait Technique: Sync {
     /// Its parameters, in the order in which they are listed.
     fn params(&self) -> &'static [ParamInfo];
 
-    /// The frame of `scene` at `size` (width, height); textures come from `textures`.
+    /// The frame of `scene` at `size` (width, height).
     ///
     /// # Errors
     /// The scene cannot be drawn by this technique, or the size is impossible.
@@ -72,7 +36,6 @@ pub trait Technique: Sync {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError>;
 }
 

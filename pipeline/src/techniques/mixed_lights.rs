@@ -18,7 +18,7 @@ use gnomon_shaders::transform::FullScreen;
 use crate::parts::casters::SKIP;
 use crate::parts::passes;
 use crate::parts::visibility::{attachment, binding, full_screen};
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::techniques::find;
 use crate::world::scene::Scene;
 
@@ -88,7 +88,6 @@ impl Technique for MixedLights {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let inner = [FIRST, REST].map(|p| Inner::new(self.name(), p, params));
         let [first, rest] = inner;
@@ -101,11 +100,11 @@ impl Technique for MixedLights {
             ..scene.clone()
         };
         match (&bright[..], &others[..]) {
-            (bright, []) => first.frame(scene, bright, size, textures),
-            ([], others) => rest.frame(scene, others, size, textures),
+            (bright, []) => first.frame(scene, bright, size),
+            ([], others) => rest.frame(scene, others, size),
             (bright, others) => {
-                let frame = first.frame(scene, bright, size, textures)?;
-                let second = rest.frame(&dark, others, size, textures)?;
+                let frame = first.frame(scene, bright, size)?;
+                let second = rest.frame(&dark, others, size)?;
                 Ok(joined(frame, second))
             }
         }
@@ -186,13 +185,12 @@ impl Inner {
         scene: &Scene,
         lights: &[usize],
         size: [u32; 2],
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let part = Scene {
             lights: lights.iter().map(|&l| scene.lights[l].clone()).collect(),
             ..scene.clone()
         };
-        let frame = self.technique.frame(&part, size, &self.params, textures);
+        let frame = self.technique.frame(&part, size, &self.params);
         let mut frame = frame.map_err(|e| numbered(e, lights))?;
         for caster in &mut frame.casters {
             caster.light = lights[caster.light];
@@ -231,12 +229,13 @@ fn by_brightness(scene: &Scene, mut lights: Vec<usize>) -> Vec<usize> {
 
 /// Both frames and a pass that adds the second one's light to the first's.
 fn joined(mut frame: Frame, second: Frame) -> Frame {
-    for mut pass in second.list.passes {
+    let mut rest = second.recording;
+    for pass in &mut rest.list.passes {
         pass.label += " (rest)";
-        frame.list.passes.push(pass);
     }
-    let add = addition(frame.outputs.color, second.outputs.color);
-    frame.list.passes.push(add);
+    let moved = frame.recording.append(rest);
+    let add = addition(frame.outputs.color, moved(second.outputs.color));
+    frame.recording.list.passes.push(add);
     frame.warnings.extend(second.warnings);
     frame.casters.extend(second.casters);
     for mut figure in second.figures {

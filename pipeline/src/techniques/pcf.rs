@@ -7,7 +7,7 @@ use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps};
 
 use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
 use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -62,7 +62,6 @@ impl Technique for Pcf {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let taps = taps(self.name(), params)?;
         let cubic = params.get(KERNEL.name) == "bicubic";
@@ -80,7 +79,6 @@ impl Technique for Pcf {
             margin,
         };
         mapped.frame(
-            textures,
             |light| Sources::centre(self.name(), scene, light),
             |look_up| match cubic {
                 true => look_up.whole(CubicTaps).stage(),

@@ -21,7 +21,7 @@ use gnomon_shaders::shadow_maps::{SampledKernel, WholeKernel};
 use crate::parts::horizon::HORIZON;
 use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
 use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -105,7 +105,6 @@ impl Technique for Pcss {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let search = self.points(params, SEARCH, 0)?;
         let filter = self.points(params, FILTER, 1)?;
@@ -118,7 +117,6 @@ impl Technique for Pcss {
             margin: MARGIN,
         };
         mapped.frame(
-            textures,
             |light| Sources::centre(self.name(), scene, light),
             |look_up| {
                 let light_half = look_up.light_half();

@@ -36,7 +36,7 @@
 use std::sync::Arc;
 
 use gnomon_raster::state::{ColorTargetState, CullMode, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
+use gnomon_raster::{Draw, LoadOp, Recording, RenderPass, RenderPipeline};
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::crossing::WedgeCrossing;
 use gnomon_shaders::penumbra::intensity::Interpolation;
@@ -51,9 +51,7 @@ use crate::parts::wedges::penumbra::report::Met;
 use crate::parts::wedges::penumbra::screen::{self, Screen};
 use crate::parts::wedges::penumbra::volume::SoftVolume;
 use crate::parts::wedges::penumbra::{self, EXTRA_WEDGES, INTERPOLATION, hard};
-use crate::technique::{
-    CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
-};
+use crate::technique::{CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, Warning};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -102,9 +100,9 @@ impl Technique for PenumbraWedges {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        let targets = Targets::create(size, params, textures)?;
+        let mut recording = Recording::default();
+        let targets = Targets::create(size, params, &mut recording)?;
         let draws = SceneDraws::new(scene, size, params);
         let casters = casters::examine(self.name(), scene, params)?;
         let lights = passes::lights(scene, params)?;
@@ -119,7 +117,7 @@ impl Technique for PenumbraWedges {
         };
         let mut list = vec![draws.ambient_pass(&targets)];
         let (mut warnings, mut uses) = (Vec::new(), Vec::new());
-        let buffer = penumbra::light_intensity(size, textures)?;
+        let buffer = penumbra::light_intensity(size, &mut recording)?;
         let visibility = penumbra::visibility(buffer);
         for &light in lights.iter().rev() {
             let mut pass = penumbra::intensity_pass(
@@ -136,7 +134,7 @@ impl Technique for PenumbraWedges {
             let label = passes::label("lit", light, &lights);
             list.push(draws.lit_pass(&targets, light, &label, LitTest::Visibility(visibility)));
         }
-        let mut frame = targets.frame(list, visibility.output());
+        let mut frame = targets.frame(recording, list, visibility.output())?;
         frame.warnings = warnings;
         frame.casters = uses;
         Ok(frame)

@@ -20,7 +20,9 @@ use gnomon_raster::state::{
     ColorTargetState, CompareFunction, DepthStencilState, PrimitiveState, StencilFaceState,
     StencilOperation, StencilState,
 };
-use gnomon_raster::{Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};
+use gnomon_raster::{
+    Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor,
+};
 use gnomon_shaders::surface::Constant;
 use gnomon_shaders::transform::FullScreen;
 
@@ -30,8 +32,7 @@ use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
 use crate::parts::visibility::{VisibilityTexture, attachment, full_screen};
 use crate::parts::volumes::volume_draws::{self, Casters};
 use crate::technique::{
-    CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, VolumeMethod,
-    Warning,
+    CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, VolumeMethod, Warning,
 };
 use crate::world::scene::Scene;
 
@@ -100,17 +101,17 @@ impl Technique for SampledShadowVolumes {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
+        let mut recording = Recording::default();
         let sampling = Sampling::new(self.name(), params)?;
-        let targets = Targets::create(size, params, textures)?;
+        let targets = Targets::create(size, params, &mut recording)?;
         let format = match params.get(ACCUMULATION.name) {
             "r16f" => Format::R16Float,
             _ => Format::R32Float,
         };
         let [width, height] = size;
         let sum = TextureDescriptor::d2("visibility", format, width, height);
-        let sum = VisibilityTexture::red(textures.create(&sum)?);
+        let sum = VisibilityTexture::red(recording.create(&sum)?);
         let draws = SceneDraws::new(scene, size, params);
         let casters = Casters::new(self.name(), scene, size, params)?;
         let lights = passes::lights(scene, params)?;
@@ -133,7 +134,7 @@ impl Technique for SampledShadowVolumes {
             let label = passes::label("lit", light, &lights);
             list.push(draws.lit_pass(&targets, light, &label, LitTest::Visibility(sum)));
         }
-        let mut frame = targets.frame(list, sum.output());
+        let mut frame = targets.frame(recording, list, sum.output())?;
         frame.warnings = warnings;
         frame.casters = uses;
         Ok(frame)

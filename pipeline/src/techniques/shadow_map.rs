@@ -5,7 +5,7 @@ use gnomon_shaders::shadow_maps::BoxTaps;
 
 use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
 use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -42,7 +42,6 @@ impl Technique for ShadowMap {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let mapped = Mapped {
             name: self.name(),
@@ -52,7 +51,6 @@ impl Technique for ShadowMap {
             margin: Margin::ONE_TEXEL,
         };
         mapped.frame(
-            textures,
             |light| Sources::centre(self.name(), scene, light),
             |look_up| look_up.whole(BoxTaps(1)).stage(),
         )

@@ -14,7 +14,7 @@ use crate::parts::light_samples::light_points;
 use crate::parts::maps::light_view::{LightExtent, ViewedLight};
 use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
 use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::light::HardLight;
 use crate::world::scene::Scene;
 
@@ -77,7 +77,6 @@ impl Technique for ShadowMapsN {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
         let side = mapped::square_side(self.name(), params, MAPS)?;
         let mapped = Mapped {
@@ -88,7 +87,6 @@ impl Technique for ShadowMapsN {
             margin: Margin::ONE_TEXEL,
         };
         mapped.frame(
-            textures,
             |light| self.points(scene, light, side, params),
             |look_up| look_up.share(BoxTaps(1)).stage(),
         )

@@ -12,14 +12,12 @@
 //! Visibility is that of the first light asked for, which is drawn last, so
 //! that the final stencil is its own.
 
-use gnomon_raster::{Draw, LoadOp, RenderPass};
+use gnomon_raster::{Draw, LoadOp, Recording, RenderPass};
 
 use crate::parts::casters;
 use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
 use crate::parts::volumes::volume_draws::{self, Casters};
-use crate::technique::{
-    Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, VisibilityOutput,
-};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, VisibilityOutput};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -52,9 +50,9 @@ impl Technique for ShadowVolumes {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        let targets = Targets::create(size, params, textures)?;
+        let mut recording = Recording::default();
+        let targets = Targets::create(size, params, &mut recording)?;
         let draws = SceneDraws::new(scene, size, params);
         let casters = Casters::new(self.name(), scene, size, params)?;
         let lights = passes::lights(scene, params)?;
@@ -70,7 +68,7 @@ impl Technique for ShadowVolumes {
             let label = passes::label("lit", light, &lights);
             list.push(draws.lit_pass(&targets, light, &label, LitTest::StencilZero));
         }
-        let mut frame = targets.frame(list, VisibilityOutput::StencilZero);
+        let mut frame = targets.frame(recording, list, VisibilityOutput::StencilZero)?;
         frame.warnings = warnings;
         frame.casters = uses;
         Ok(frame)

@@ -1,8 +1,8 @@
 //! The scene without shadows: ambient light, then every light added everywhere.
 
-use crate::technique::{
-    Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, VisibilityOutput,
-};
+use gnomon_raster::Recording;
+
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, VisibilityOutput};
 use crate::world::scene::Scene;
 
 use crate::parts::passes::{self, LitTest, SceneDraws};
@@ -34,9 +34,9 @@ impl Technique for Unshadowed {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        let targets = passes::Targets::create(size, params, textures)?;
+        let mut recording = Recording::default();
+        let targets = passes::Targets::create(size, params, &mut recording)?;
         let draws = SceneDraws::new(scene, size, params);
         let mut list = vec![draws.ambient_pass(&targets)];
         let lights = passes::lights(scene, params)?;
@@ -44,6 +44,6 @@ impl Technique for Unshadowed {
             let label = passes::label("lit", light, &lights);
             list.push(draws.lit_pass(&targets, light, &label, LitTest::Everywhere));
         }
-        Ok(targets.frame(list, VisibilityOutput::Full))
+        targets.frame(recording, list, VisibilityOutput::Full)
     }
 }

@@ -10,6 +10,15 @@ use crate::{MAX_TEXTURE_BYTES, MAX_TEXTURE_SIZE};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TextureId(pub(crate) u32);
 
+impl TextureId {
+    /// Its place among the textures of its GPU or recording, in the order of their
+    /// creation.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// Shape of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TextureDimension {
@@ -53,7 +62,7 @@ impl TextureDescriptor {
 }
 
 /// One two-dimensional image of a texture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Subresource {
     /// Mip level.
     pub mip: u32,
@@ -110,17 +119,7 @@ impl Texture {
     }
 
     pub(crate) fn check_subresource(&self, s: Subresource) -> Result<(), Error> {
-        let layers = self.planes.get(s.mip as usize).map_or(0, Vec::len);
-        if (s.layer as usize) < layers {
-            Ok(())
-        } else {
-            Err(Error::NoSuchSubresource {
-                texture: self.desc.label.clone(),
-                subresource: s,
-                mip_levels: self.desc.mip_levels,
-                layers,
-            })
-        }
+        image_size(&self.desc, s).map(|_| ())
     }
 
     pub(crate) fn color(&self, s: Subresource) -> Result<&ColorBlocks, Error> {
@@ -346,7 +345,8 @@ pub(crate) fn decode(f: Format, t: [u32; 4]) -> ColorTexel {
     })
 }
 
-fn pixels(l: &Layout) -> impl Iterator<Item = (u32, u32)> + use<> {
+/// Every pixel, row by row from the top.
+pub(super) fn pixels(l: &Layout) -> impl Iterator<Item = (u32, u32)> + use<> {
     let (w, h) = (l.width, l.height);
     (0..h).flat_map(move |y| (0..w).map(move |x| (x, y)))
 }
@@ -370,6 +370,21 @@ fn level(desc: &TextureDescriptor, mip: u32) -> (Layout, u32) {
     (Layout::new(w, h), layers)
 }
 
+/// Width and height of image `s`, where there is one.
+pub(crate) fn image_size(desc: &TextureDescriptor, s: Subresource) -> Result<[u32; 2], Error> {
+    let (layout, layers) = level(desc, s.mip);
+    let layers = if s.mip < desc.mip_levels { layers } else { 0 };
+    if s.layer < layers {
+        return Ok([layout.width, layout.height]);
+    }
+    Err(Error::NoSuchSubresource {
+        texture: desc.label.clone(),
+        subresource: s,
+        mip_levels: desc.mip_levels,
+        layers: layers as usize,
+    })
+}
+
 /// Bytes of all levels with their padding, zmin/zmax left out.
 fn storage_bytes(desc: &TextureDescriptor) -> u64 {
     let texel = if desc.format.is_depth_stencil() {
@@ -384,7 +399,8 @@ fn storage_bytes(desc: &TextureDescriptor) -> u64 {
     texel * (0..desc.mip_levels).map(texels).sum::<u64>()
 }
 
-fn validate(desc: &TextureDescriptor) -> Result<(), Error> {
+/// Whether such a texture is possible.
+pub(crate) fn validate(desc: &TextureDescriptor) -> Result<(), Error> {
     let [w, h, d] = desc.size;
     let bad = |reason: String| {
         Err(Error::InvalidTexture {

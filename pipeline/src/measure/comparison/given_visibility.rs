@@ -2,11 +2,11 @@
 //! would make if its shadows were right. It is in no list; see
 //! [`crate::measure::comparison::shaded`].
 
-use gnomon_raster::{Format, Subresource, TextureDescriptor};
+use gnomon_raster::{Format, Recording, Subresource, TextureDescriptor};
 
 use crate::parts::passes::{LitTest, SceneDraws, Targets};
 use crate::parts::visibility::VisibilityTexture;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
 
 /// Light number `light` times `values`; no other light shines.
@@ -35,18 +35,18 @@ impl Technique for GivenVisibility<'_> {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        let targets = Targets::create(size, params, textures)?;
+        let mut recording = Recording::default();
+        let targets = Targets::create(size, params, &mut recording)?;
         let draws = SceneDraws::new(scene, size, params);
         let [width, height] = size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
-        let texture = textures.create(&desc)?;
+        let texture = recording.create(&desc)?;
         let texels: Vec<[f32; 4]> = self.values.iter().map(|v| [*v, 0.0, 0.0, 0.0]).collect();
-        textures.write(texture, Subresource::default(), &texels)?;
+        recording.write(texture, Subresource::default(), &texels)?;
         let visibility = VisibilityTexture::red(texture);
         let lit = draws.lit_pass(&targets, self.light, "lit", LitTest::Visibility(visibility));
         let passes = vec![draws.ambient_pass(&targets), lit];
-        Ok(targets.frame(passes, visibility.output()))
+        targets.frame(recording, passes, visibility.output())
     }
 }

@@ -41,9 +41,10 @@ fn drawn(name: &str, set: &[&str]) -> Drawn {
     let found = techniques::find("penumbra-wedges-restructured").unwrap();
     let params = Params::parse(found, set).unwrap();
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
-    let built = build(&scene, SIZE, &params, &mut gpu).unwrap();
+    let built = build(&scene, SIZE, &params).unwrap();
+    gpu.load(&built.frame.recording).unwrap();
     let mut covered = Covered::new(&built.wedge_draws);
-    gpu.submit_observed(&built.frame.list, &mut covered)
+    gpu.submit_observed(&built.frame.recording.list, &mut covered)
         .unwrap();
     let texture = gpu.texture(built.frame.outputs.depth_stencil).unwrap();
     let depth = texture.read_depth(Subresource::default()).unwrap();

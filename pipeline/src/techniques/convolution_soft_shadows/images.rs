@@ -1,12 +1,12 @@
 //! Textures of basis images, and what becomes of them.
 
-use gnomon_raster::{Format, Sampler, TextureBinding, TextureDescriptor, TextureId};
+use gnomon_raster::{Format, Recording, Sampler, TextureBinding, TextureDescriptor, TextureId};
 use gnomon_shaders::convolution::look_up::Images;
 use gnomon_shaders::convolution::{Atlas, Encoding};
 
 use super::settings::{Filter, MAP_SIZE, Settings};
 use crate::geometry::convolution::FixedPoint;
-use crate::technique::{TechniqueError, TextureSource};
+use crate::technique::TechniqueError;
 
 /// Textures of one size that are treated together, tile by tile.
 pub(super) struct Group {
@@ -30,7 +30,7 @@ impl Group {
         tiles: usize,
         filter: Filter,
         kinds: &[(&str, Format, Encoding)],
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let [width, height] = atlas.size();
         let levels = atlas.side.ilog2();
@@ -63,8 +63,8 @@ impl Group {
                 ),
             };
             Ok::<_, TechniqueError>(ImageTexture {
-                main: textures.create(&main)?,
-                aside: textures.create(&beside)?,
+                main: recording.create(&main)?,
+                aside: recording.create(&beside)?,
                 encoding,
             })
         };
@@ -97,7 +97,7 @@ impl BasisTextures {
     pub(super) fn create(
         technique: &'static str,
         settings: &Settings,
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let pairs = settings.terms.div_ceil(2);
         let tiles = if settings.filter == Filter::SatU32 {
@@ -116,8 +116,8 @@ impl BasisTextures {
         let series = series.map(|(label, (format, encoding))| (label, format, encoding));
         let depth = [("csm depth", depth.0, depth.1)];
         Ok(Self {
-            series: Group::create(atlas, tiles, filter, &series, textures)?,
-            depth: Group::create(single, 1, filter, &depth, textures)?,
+            series: Group::create(atlas, tiles, filter, &series, recording)?,
+            depth: Group::create(single, 1, filter, &depth, recording)?,
         })
     }
 }

@@ -32,7 +32,7 @@ use gnomon_raster::state::{
     ColorTargetState, CompareFunction, DepthState, DepthStencilState, PrimitiveState, Viewport,
 };
 use gnomon_raster::{
-    Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
+    Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
 };
 use gnomon_shaders::convolution::look_up::{
     BoxEdges, FloatTables, IntegerTables, Mipmaps, Prefiltered,
@@ -52,9 +52,7 @@ use crate::parts::maps::lit_tiles::{FurtherLights, LitTiles};
 use crate::parts::maps::mapped::{self, Notes, Said};
 use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
 use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
-use crate::technique::{
-    Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
-};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, Warning};
 use crate::world::light::{Light, LightShape};
 use crate::world::scene::Scene;
 
@@ -103,18 +101,18 @@ impl Technique for ConvolutionSoftShadows {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
+        let mut recording = Recording::default();
         let settings = Settings::new(self.name(), params)?;
         let draws = SceneDraws::new(scene, size, params);
         let shadows = Shadows {
             scene,
             size,
-            targets: Targets::create(size, params, textures)?,
-            positions: Positions::create(size, textures)?,
-            visibility: visibility_texture(size, textures)?,
-            map: LightMap::create(settings.side, textures)?,
-            images: BasisTextures::create(self.name(), &settings, textures)?,
+            targets: Targets::create(size, params, &mut recording)?,
+            positions: Positions::create(size, &mut recording)?,
+            visibility: visibility_texture(size, &mut recording)?,
+            map: LightMap::create(settings.side, &mut recording)?,
+            images: BasisTextures::create(self.name(), &settings, &mut recording)?,
             around: Surroundings::new(scene, size),
             draws,
             settings,
@@ -143,7 +141,9 @@ impl Technique for ConvolutionSoftShadows {
             let test = LitTest::Visibility(visibility);
             list.push(shadows.draws.lit_pass(targets, light, &label("lit"), test));
         }
-        let mut frame = shadows.targets.frame(list, visibility.output());
+        let mut frame = shadows
+            .targets
+            .frame(recording, list, visibility.output())?;
         frame.warnings = notes.warnings;
         frame.figures = notes.figures;
         Ok(frame)
@@ -152,10 +152,10 @@ impl Technique for ConvolutionSoftShadows {
 
 fn visibility_texture(
     [width, height]: [u32; 2],
-    textures: &mut dyn TextureSource,
+    recording: &mut Recording,
 ) -> Result<TextureId, TechniqueError> {
     let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
-    Ok(textures.create(&desc)?)
+    Ok(recording.create(&desc)?)
 }
 
 /// Lights that are no parallelograms.

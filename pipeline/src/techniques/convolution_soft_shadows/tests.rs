@@ -2,7 +2,7 @@
 //! against a closed form.
 
 use glam::DVec3;
-use gnomon_raster::{Gpu, GpuConfig, Subresource, TextureDescriptor, TextureId};
+use gnomon_raster::{Gpu, GpuConfig, Subresource, TextureId};
 
 use super::*;
 use crate::geometry::convolution::{Series, Suppression};
@@ -13,41 +13,27 @@ use crate::world::scene::builtin::PLATES;
 
 const PICTURE: [u32; 2] = [96, 64];
 
-/// A GPU that remembers its textures by label.
-struct Remembering {
+/// A GPU after a frame, with the frame's textures by label.
+struct Finished {
     gpu: Gpu,
     textures: Vec<(String, TextureId)>,
 }
 
-impl TextureSource for Remembering {
-    fn create(&mut self, desc: &TextureDescriptor) -> Result<TextureId, gnomon_raster::Error> {
-        let id = self.gpu.create_texture(desc)?;
-        self.textures.push((desc.label.clone(), id));
-        Ok(id)
-    }
-
-    fn write(
-        &mut self,
-        texture: TextureId,
-        image: Subresource,
-        texels: &[[f32; 4]],
-    ) -> Result<(), gnomon_raster::Error> {
-        self.gpu.texture_mut(texture)?.write_color(image, texels)
-    }
-}
-
-impl Remembering {
+impl Finished {
     /// All that a technique left behind, of a scene with one light view.
     fn run(scene: &Scene, set: &[&str]) -> Self {
-        let mut all = Self {
-            gpu: Gpu::new(GpuConfig::default()).unwrap(),
-            textures: Vec::new(),
-        };
         let technique = find("convolution-soft-shadows").unwrap();
         let params = Params::parse(technique, set).unwrap();
-        let frame = technique.frame(scene, PICTURE, &params, &mut all).unwrap();
-        all.gpu.submit(&frame.list).unwrap();
-        all
+        let recording = technique.frame(scene, PICTURE, &params).unwrap().recording;
+        let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
+        gpu.load(&recording).unwrap();
+        gpu.submit(&recording.list).unwrap();
+        let ids = gpu.texture_ids().zip(recording.textures());
+        let textures = ids.map(|(id, t)| (t.descriptor().label.clone(), id));
+        Self {
+            textures: textures.collect(),
+            gpu,
+        }
     }
 
     fn read(&self, label: &str) -> Vec<[f32; 4]> {
@@ -94,7 +80,7 @@ struct Found {
 }
 
 impl Twin {
-    fn new(scene: &Scene, ran: &Remembering, test: Test) -> Self {
+    fn new(scene: &Scene, ran: &Finished, test: Test) -> Self {
         let around = Surroundings::new(scene, PICTURE);
         let light = ViewedLight::new("test", &scene.lights[0], 0).unwrap();
         let depths = ran.read("light view");
@@ -200,7 +186,7 @@ fn an_exact_step_is_the_closed_form_to_a_texel() {
     let scene = builtin::build("parallel-plates").unwrap();
     for side in ["128", "256"] {
         let set = format!("map-size={side}");
-        let ran = Remembering::run(&scene, &[&set]);
+        let ran = Finished::run(&scene, &[&set]);
         let twin = Twin::new(&scene, &ran, Test::Exact);
         let texel = twin.texel(PLATES.plate_distance);
         let plate = |by: f64| crate::world::plates::ParallelPlates {
@@ -240,7 +226,7 @@ fn the_shaders_find_what_the_twin_finds() {
         let centred = &["filter=sat-mean", "a=0", "map-size=64", "m=5"];
         // Integers have 20 bits here; sums of 64 x 64 floats lose some 1e-4 of a texel.
         for (set, allowed) in [(bits, 2e-5), (floats, 3e-4), (centred, 1e-4)] {
-            let ran = Remembering::run(&scene, set);
+            let ran = Finished::run(&scene, set);
             let series = Series::new(5, Suppression::Scale, 1.0);
             let twin = Twin::new(&scene, &ran, Test::Series(series));
             let (positions, visible) = (ran.read("positions"), ran.read("visibility"));

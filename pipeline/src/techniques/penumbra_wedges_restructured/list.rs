@@ -2,8 +2,8 @@
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
-    DepthStencilAttachment, Draw, Format, LoadOp, RenderPass, RenderPipeline, StoreOp, Subresource,
-    TextureDescriptor, TextureId,
+    DepthStencilAttachment, Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, StoreOp,
+    Subresource, TextureDescriptor, TextureId,
 };
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::buffers::{StencilCounts, TileDepths};
@@ -15,7 +15,7 @@ use crate::parts::passes::Targets;
 use crate::parts::visibility::{attachment, binding, full_screen};
 use crate::parts::wedges::penumbra;
 use crate::parts::wedges::penumbra::light::{self, LightSphere};
-use crate::technique::{Params, TechniqueError, TextureSource};
+use crate::technique::{Params, TechniqueError};
 
 /// A draw with the wedge shader that it runs, if it does.
 pub(super) type Shaded = (Draw, Option<WedgeInside>);
@@ -170,7 +170,7 @@ pub(super) fn tile_depths(
     choices: &Choices,
     targets: &Targets,
     size: [u32; 2],
-    textures: &mut dyn TextureSource,
+    recording: &mut Recording,
 ) -> Result<Option<(RenderPass, Vec<TextureId>)>, TechniqueError> {
     let names: &[&str] = match choices.tiles.culling {
         Culling::None => return Ok(None),
@@ -181,7 +181,7 @@ pub(super) fn tile_depths(
     let [width, height] = size.map(|s| s.div_ceil(1 << shift));
     let create = |name: &&str| {
         let desc = TextureDescriptor::d2(name, Format::R32Float, width, height);
-        textures.create(&desc)
+        recording.create(&desc)
     };
     let bounds = names.iter().map(create).collect::<Result<Vec<_>, _>>()?;
     let pipeline = RenderPipeline {
@@ -209,12 +209,12 @@ pub(super) fn tile_depths(
 pub(super) fn umbra_stencil(
     params: &Params,
     [width, height]: [u32; 2],
-    textures: &mut dyn TextureSource,
+    recording: &mut Recording,
 ) -> Result<Option<TextureId>, TechniqueError> {
     if params.get(PASSES.name) != "three" {
         return Ok(None);
     }
     let format = Format::Depth24Stencil8;
     let desc = TextureDescriptor::d2("umbra stencil", format, width, height);
-    Ok(Some(textures.create(&desc)?))
+    Ok(Some(recording.create(&desc)?))
 }

@@ -49,7 +49,7 @@
 mod draws;
 mod list;
 
-use gnomon_raster::TextureId;
+use gnomon_raster::{Recording, TextureId};
 use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, TileTest, WedgeInside};
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
@@ -58,9 +58,7 @@ use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
 use crate::parts::wedges::penumbra::hard::Method;
 use crate::parts::wedges::penumbra::screen::Screen;
 use crate::parts::wedges::penumbra::{self, EXTRA_WEDGES, INTERPOLATION};
-use crate::technique::{
-    CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource, Warning,
-};
+use crate::technique::{CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, Warning};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -134,9 +132,8 @@ impl Technique for PenumbraWedgesRestructured {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        build(scene, size, params, textures).map(|built| built.frame)
+        build(scene, size, params).map(|built| built.frame)
     }
 }
 
@@ -160,16 +157,16 @@ pub(crate) fn build(
     scene: &Scene,
     size: [u32; 2],
     params: &Params,
-    textures: &mut dyn TextureSource,
 ) -> Result<Built, TechniqueError> {
-    let targets = Targets::create(size, params, textures)?;
+    let mut recording = Recording::default();
+    let targets = Targets::create(size, params, &mut recording)?;
     let draws = SceneDraws::new(scene, size, params);
     let casters = casters::examine(PenumbraWedgesRestructured.name(), scene, params)?;
     let lights = passes::lights(scene, params)?;
     let choices = Choices::new(params, size);
     let mut list = vec![draws.ambient_pass(&targets)];
     let mut inputs = vec![targets.depth_texture()];
-    if let Some((pass, bounds)) = list::tile_depths(&choices, &targets, size, textures)? {
+    if let Some((pass, bounds)) = list::tile_depths(&choices, &targets, size, &mut recording)? {
         list.push(pass);
         inputs.extend(bounds);
     }
@@ -183,10 +180,10 @@ pub(crate) fn build(
         screen: Screen::new(&draws.view, size),
         choices,
         inputs,
-        umbra_stencil: list::umbra_stencil(params, size, textures)?,
+        umbra_stencil: list::umbra_stencil(params, size, &mut recording)?,
     };
     let mut built = Parts::default();
-    let buffer = penumbra::light_intensity(size, textures)?;
+    let buffer = penumbra::light_intensity(size, &mut recording)?;
     let visibility = penumbra::visibility(buffer);
     for &light in lights.iter().rev() {
         let named = |what: &str| passes::label(what, light, &lights);
@@ -203,7 +200,7 @@ pub(crate) fn build(
             LitTest::Visibility(visibility),
         ));
     }
-    let mut frame = targets.frame(list, visibility.output());
+    let mut frame = targets.frame(recording, list, visibility.output())?;
     frame.warnings = built.warnings;
     frame.casters = built.uses;
     Ok(Built {

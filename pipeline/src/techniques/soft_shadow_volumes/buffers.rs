@@ -1,14 +1,16 @@
 //! Textures that visibility is added up in, as floats or as 6 of 8 bits.
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor, TextureId};
+use gnomon_raster::{
+    Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
+};
 use gnomon_shaders::soft_volumes::Resolve;
 use gnomon_shaders::transform::FullScreen;
 
 use super::{BUFFER, COPY_BACK};
 use crate::parts::visibility::{VisibilityTexture, attachment, binding, full_screen};
 use crate::parts::wedges::soft::covering::light_image;
-use crate::technique::{Params, TechniqueError, TextureSource};
+use crate::technique::{Params, TechniqueError};
 
 /// Textures that coverage is added up in.
 pub(super) struct Buffers {
@@ -26,10 +28,10 @@ impl Buffers {
     pub(super) fn create(
         [width, height]: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let mut create = |label: &str, format| {
-            textures.create(&TextureDescriptor::d2(label, format, width, height))
+            recording.create(&TextureDescriptor::d2(label, format, width, height))
         };
         let bytes = params.get(BUFFER.name) == "rgba8x2";
         let aside = !bytes && params.get(COPY_BACK.name) == "on";

@@ -30,9 +30,10 @@ use crate::parts::wedges::soft::covering::{
 };
 use crate::parts::wedges::soft::edges::Casters;
 use crate::parts::wedges::soft::light::SoftLight;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
 use buffers::Buffers;
+use gnomon_raster::Recording;
 use volumes::Volumes;
 
 /// The registry's entry.
@@ -103,11 +104,11 @@ impl Technique for SoftShadowVolumes {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        let targets = Targets::create(size, params, textures)?;
-        let positions = Positions::create(size, textures)?;
-        let buffers = Buffers::create(size, params, textures)?;
+        let mut recording = Recording::default();
+        let targets = Targets::create(size, params, &mut recording)?;
+        let positions = Positions::create(size, &mut recording)?;
+        let buffers = Buffers::create(size, params, &mut recording)?;
         let draws = SceneDraws::new(scene, size, params);
         let casters = Casters::new(self.name(), scene, params)?;
         let lights = passes::lights(scene, params)?;
@@ -126,7 +127,7 @@ impl Technique for SoftShadowVolumes {
                 buffers: &buffers,
                 light: &soft,
                 params,
-                covering: coverings.of(self.name(), &soft, light, params, textures)?,
+                covering: coverings.of(self.name(), &soft, light, params, &mut recording)?,
             };
             let label = |what: &str| passes::label(what, light, &lights);
             list.push(volumes.count_pass(label("quads"), &silhouettes));
@@ -138,7 +139,7 @@ impl Technique for SoftShadowVolumes {
             let test = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }
-        let mut frame = targets.frame(list, buffers.visibility().output());
+        let mut frame = targets.frame(recording, list, buffers.visibility().output())?;
         frame.warnings = warnings;
         Ok(frame)
     }

@@ -3,12 +3,14 @@
 
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor, TextureId};
+use gnomon_raster::{
+    Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
+};
 use gnomon_shaders::split_volumes::{AddVisibility, CombineGroups};
 use gnomon_shaders::transform::FullScreen;
 
 use crate::parts::visibility::{VisibilityTexture, attachment, binding, full_screen};
-use crate::technique::{TechniqueError, TextureSource};
+use crate::technique::TechniqueError;
 
 /// Textures that coverage is added up in.
 pub(super) struct Buffers {
@@ -25,10 +27,10 @@ pub(super) struct Buffers {
 impl Buffers {
     pub(super) fn create(
         [width, height]: [u32; 2],
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let mut create = |label: &str, format| {
-            textures.create(&TextureDescriptor::d2(label, format, width, height))
+            recording.create(&TextureDescriptor::d2(label, format, width, height))
         };
         Ok(Self {
             hard: create("hard count", Format::R32Float)?,

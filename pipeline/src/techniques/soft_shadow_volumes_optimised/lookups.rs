@@ -1,13 +1,13 @@
 //! Look-up textures of a frame.
 
-use gnomon_raster::TextureId;
+use gnomon_raster::{Recording, TextureId};
 use gnomon_shaders::coverage::Image;
 use gnomon_shaders::split_volumes::Tables;
 
 use super::{COVERAGE, SPLIT_BITS};
 use crate::parts::wedges::soft::light::SoftLight;
 use crate::parts::wedges::soft::split_tables;
-use crate::technique::{Params, TechniqueError, TextureSource};
+use crate::technique::{Params, TechniqueError};
 
 /// Look-up textures of the lights of a frame, one set for each shape.
 #[derive(Default)]
@@ -19,7 +19,7 @@ impl Lookups {
         &mut self,
         light: &SoftLight,
         params: &Params,
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Option<(Tables, [TextureId; 3])>, TechniqueError> {
         let tables = Tables {
             coverage: params.get(COVERAGE.name) == "lut",
@@ -32,7 +32,7 @@ impl Lookups {
         if let Some((_, made)) = self.0.iter().find(|(of, _)| *of == shape) {
             return Ok(Some((tables, *made)));
         }
-        let made = split_tables::create(shape, textures)?;
+        let made = split_tables::create(shape, recording)?;
         self.0.push((shape, made));
         Ok(Some((tables, made)))
     }

@@ -21,6 +21,7 @@ mod buffers;
 mod lookups;
 mod volumes;
 
+use gnomon_raster::Recording;
 use gnomon_shaders::split_volumes::{AddVisibility, Combination};
 
 use super::soft_shadow_volumes::SPHERE;
@@ -31,7 +32,7 @@ use crate::parts::visibility::Positions;
 use crate::parts::wedges::soft::edges::Casters;
 use crate::parts::wedges::soft::light::{SoftLight, split};
 use crate::parts::wedges::soft::wedges::warnings_of;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, TextureSource};
+use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
 use buffers::Buffers;
 use lookups::Lookups;
@@ -122,11 +123,11 @@ impl Technique for SoftShadowVolumesOptimised {
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
-        textures: &mut dyn TextureSource,
     ) -> Result<Frame, TechniqueError> {
-        let targets = Targets::create(size, params, textures)?;
-        let positions = Positions::create(size, textures)?;
-        let buffers = Buffers::create(size, textures)?;
+        let mut recording = Recording::default();
+        let targets = Targets::create(size, params, &mut recording)?;
+        let positions = Positions::create(size, &mut recording)?;
+        let buffers = Buffers::create(size, &mut recording)?;
         let draws = SceneDraws::new(scene, size, params);
         let casters = Casters::new(self.name(), scene, params)?;
         let lights = passes::lights(scene, params)?;
@@ -151,7 +152,7 @@ impl Technique for SoftShadowVolumesOptimised {
                     targets: &targets,
                     positions,
                     buffers: &buffers,
-                    tables: lookups.of(&light, params, textures)?,
+                    tables: lookups.of(&light, params, &mut recording)?,
                     light: &light,
                     params,
                 };
@@ -175,7 +176,7 @@ impl Technique for SoftShadowVolumesOptimised {
             let visibility = LitTest::Visibility(buffers.visibility());
             list.push(draws.lit_pass(&targets, number, &label("lit"), visibility));
         }
-        let mut frame = targets.frame(list, buffers.visibility().output());
+        let mut frame = targets.frame(recording, list, buffers.visibility().output())?;
         frame.warnings = warnings;
         Ok(frame)
     }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
-    DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp, RenderPass, RenderPipeline, StoreOp,
-    Subresource, TextureDescriptor, TextureId, VertexBuffer,
+    DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp, Recording, RenderPass,
+    RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
 };
 use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth, Projection};
 use gnomon_shaders::surface::PixelRays;
@@ -16,7 +16,7 @@ use super::fit::Fitted;
 use super::surroundings::Surroundings;
 use crate::parts::passes::View;
 use crate::parts::visibility::attachment;
-use crate::technique::{TechniqueError, TextureSource};
+use crate::technique::TechniqueError;
 use crate::world::mesh::{Mesh, narrow};
 use crate::world::scene::Scene;
 
@@ -40,12 +40,9 @@ impl LightMap {
     ///
     /// # Errors
     /// The GPU refuses the size.
-    pub(crate) fn create(
-        size: u32,
-        textures: &mut dyn TextureSource,
-    ) -> Result<Self, TechniqueError> {
+    pub(crate) fn create(size: u32, recording: &mut Recording) -> Result<Self, TechniqueError> {
         let mut create = |label: &str, format| {
-            textures.create(&TextureDescriptor::d2(label, format, size, size))
+            recording.create(&TextureDescriptor::d2(label, format, size, size))
         };
         Ok(Self {
             depth: create("light view", Format::R32Float)?,

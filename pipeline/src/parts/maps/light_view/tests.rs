@@ -2,7 +2,7 @@
 //! lights inside geometry, receivers on both sides of the light.
 
 use glam::DVec3;
-use gnomon_raster::{CommandList, Gpu, GpuConfig, Subresource};
+use gnomon_raster::{Gpu, GpuConfig, Recording, Subresource};
 
 use super::*;
 use crate::parts::passes::View;
@@ -38,14 +38,17 @@ fn depths(scene: &Scene, fitted: &Fitted, skip: bool) -> Vec<f32> {
 
 /// The same with a slope bias in texels.
 fn sloped(scene: &Scene, fitted: &Fitted, skip: bool, slope: f64) -> Vec<f32> {
-    let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
+    let mut recording = Recording::default();
     let view = View::new(&scene.camera, PICTURE);
     let around = Surroundings::new(scene, PICTURE);
     let geometry = CasterGeometry::new(scene, &around, &view, viewed(scene).frame.centre);
-    let mut map = LightMap::create(SIZE, &mut gpu).unwrap();
+    let mut map = LightMap::create(SIZE, &mut recording).unwrap();
     map.slope = slope;
     let pass = fitted.pass("light view".into(), &geometry, &view, &map, skip);
-    gpu.submit(&CommandList { passes: vec![pass] }).unwrap();
+    recording.list.passes.push(pass);
+    let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
+    gpu.load(&recording).unwrap();
+    gpu.submit(&recording.list).unwrap();
     let texels = gpu.texture(map.depth).unwrap();
     let texels = texels.read_color(Subresource::default()).unwrap();
     texels.iter().map(|t| t.0[0]).collect()

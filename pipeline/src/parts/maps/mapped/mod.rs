@@ -9,7 +9,7 @@ mod params;
 
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};
+use gnomon_raster::{Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor};
 use gnomon_shaders::light_view::LightMapping;
 use gnomon_shaders::shadow_maps::{Shadow, ShadowTo};
 use gnomon_shaders::transform::FullScreen;
@@ -25,7 +25,7 @@ use super::lit_tiles::{FurtherLights, LitTiles};
 use crate::parts::horizon::Horizon;
 use crate::parts::passes::{self, LitTest, SceneDraws, Targets, View};
 use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
-use crate::technique::{Frame, Params, TechniqueError, TextureSource};
+use crate::technique::{Frame, Params, TechniqueError};
 use crate::world::scene::Scene;
 
 /// A view in which shadows are looked up.
@@ -100,18 +100,18 @@ impl Mapped<'_> {
     /// reads positions in slot 0 and depths in slot 1.
     pub(crate) fn frame(
         &self,
-        textures: &mut dyn TextureSource,
         sources: impl Fn(usize) -> Result<Sources, TechniqueError>,
         shader: impl Fn(&LookUp<'_>) -> FragmentStage,
     ) -> Result<Frame, TechniqueError> {
         let maps = MapParams::new(self.name, self.params)?;
         let lights = passes::lights(self.scene, self.params)?;
-        let targets = Targets::create(self.size, self.params, textures)?;
-        let positions = Positions::create(self.size, textures)?;
+        let mut recording = Recording::default();
+        let targets = Targets::create(self.size, self.params, &mut recording)?;
+        let positions = Positions::create(self.size, &mut recording)?;
         let [width, height] = self.size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
-        let visibility = VisibilityTexture::red(textures.create(&desc)?);
-        let mut map = LightMap::create(maps.fitting.size, textures)?;
+        let visibility = VisibilityTexture::red(recording.create(&desc)?);
+        let mut map = LightMap::create(maps.fitting.size, &mut recording)?;
         map.slope = maps.slope_bias.unwrap_or(self.margin.slope);
         let draws = SceneDraws::new(self.scene, self.size, self.params);
         let around = Surroundings::new(self.scene, self.size);
@@ -141,7 +141,7 @@ impl Mapped<'_> {
             let test = LitTest::Visibility(visibility);
             list.push(draws.lit_pass(&targets, light, &label("lit"), test));
         }
-        let mut frame = targets.frame(list, visibility.output());
+        let mut frame = targets.frame(recording, list, visibility.output())?;
         frame.warnings = notes.warnings;
         frame.figures = notes.figures;
         Ok(frame)

@@ -9,13 +9,13 @@ pub(crate) mod screen;
 pub(crate) mod shape;
 pub(crate) mod volume;
 
-use gnomon_raster::{Format, LoadOp, RenderPass, TextureDescriptor, TextureId};
+use gnomon_raster::{Format, LoadOp, Recording, RenderPass, TextureDescriptor, TextureId};
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
 use crate::parts::passes::{SceneDraws, Targets};
 use crate::parts::visibility::{VisibilityTexture, attachment};
-use crate::technique::{ParamInfo, Params, TechniqueError, TextureSource};
+use crate::technique::{ParamInfo, Params, TechniqueError};
 
 pub(crate) const INTERPOLATION: ParamInfo = ParamInfo {
     name: "interpolation",
@@ -42,10 +42,10 @@ pub(crate) fn interpolation(params: &Params) -> Interpolation {
 /// is full light.
 pub(crate) fn light_intensity(
     [width, height]: [u32; 2],
-    textures: &mut dyn TextureSource,
+    recording: &mut Recording,
 ) -> Result<TextureId, TechniqueError> {
     let desc = TextureDescriptor::d2("light intensity", Format::R16Sint, width, height);
-    Ok(textures.create(&desc)?)
+    Ok(recording.create(&desc)?)
 }
 
 /// The buffer as visibility: clamped to 0..=255 (paper I, §4), over 255.

@@ -22,8 +22,9 @@ fn drawn(scene: &Scene, name: &str, set: &[&str]) -> (Vec<f32>, Vec<f32>) {
     let technique = techniques::find(name).unwrap();
     let params = Params::parse(technique, set).unwrap();
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
-    let frame = technique.frame(scene, SIZE, &params, &mut gpu).unwrap();
-    gpu.submit(&frame.list).unwrap();
+    let frame = technique.frame(scene, SIZE, &params).unwrap();
+    gpu.load(&frame.recording).unwrap();
+    gpu.submit(&frame.recording.list).unwrap();
     let image = Subresource::default();
     let depth = gpu.texture(frame.outputs.depth_stencil).unwrap();
     let depth = depth.read_depth(image).unwrap();

@@ -1,8 +1,8 @@
 //! How the coverage of an edge is found: in closed form, or from the 4D texture of
 //! paper III (§3.2.3), and the parameters that say so.
 
-use gnomon_raster::TextureId;
 use gnomon_raster::shader::FragmentStage;
+use gnomon_raster::{Recording, TextureId};
 use gnomon_shaders::coverage::{Edge, Image};
 use gnomon_shaders::coverage_table::CoverageTable;
 use gnomon_shaders::soft_volumes::{CoverTo, ExactCoverage, HardPlane, Penumbra};
@@ -10,7 +10,7 @@ use gnomon_shaders::soft_volumes::{CoverTo, ExactCoverage, HardPlane, Penumbra};
 use super::light::{LightSide, SoftLight};
 use super::light_image::LightImage;
 use super::table::{self, Contents};
-use crate::technique::{ParamInfo, Params, TechniqueError, TextureSource};
+use crate::technique::{ParamInfo, Params, TechniqueError};
 
 pub(crate) const BACKEND: ParamInfo = ParamInfo {
     name: "backend",
@@ -74,14 +74,14 @@ impl Coverings {
         light: &SoftLight,
         number: usize,
         params: &Params,
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Covering, TechniqueError> {
         let shape = light.sides.first().map(|s| s.projector.image());
         let known = self.0.iter().find(|(of, _)| Some(*of) == shape);
         if let Some((_, covering)) = known {
             return Ok(*covering);
         }
-        let covering = Covering::create(technique, light, number, params, textures)?;
+        let covering = Covering::create(technique, light, number, params, recording)?;
         self.0.extend(shape.map(|shape| (shape, covering)));
         Ok(covering)
     }
@@ -93,7 +93,7 @@ impl Covering {
         light: &SoftLight,
         number: usize,
         params: &Params,
-        textures: &mut dyn TextureSource,
+        recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let image = light_image(params);
         let wanted = params.get(BACKEND.name) == "texture4d" || image.is_some();
@@ -124,7 +124,7 @@ impl Covering {
             linear: params.get(TEXTURE_FILTER.name) == "quadlinear",
             vertex_centred: params.get(TEXTURE_CENTRED.name) == "vertex",
         };
-        let texture = table::create(&table, &contents, textures)?;
+        let texture = table::create(&table, &contents, recording)?;
         Ok(Self::Table(table, texture))
     }
 

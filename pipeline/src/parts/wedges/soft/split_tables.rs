@@ -4,24 +4,30 @@
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use gnomon_raster::{Format, Subresource, TextureDescriptor, TextureDimension, TextureId};
+use gnomon_raster::{
+    Format, Recording, Subresource, TextureDescriptor, TextureDimension, TextureId,
+};
 use gnomon_shaders::coverage::Image;
 use gnomon_shaders::split_volumes::{ANGLE_SIDE, AREA_SIDE, FULL, HALF_TURN, SPLIT_ENTRIES};
 
-use crate::technique::{TechniqueError, TextureSource};
+use crate::technique::TechniqueError;
 
 /// All three textures, in the order of the shader's slots 1 to 3.
 pub(crate) fn create(
     image: Image,
-    textures: &mut dyn TextureSource,
+    recording: &mut Recording,
 ) -> Result<[TextureId; 3], TechniqueError> {
-    Ok([angles(textures)?, areas(image, textures)?, split(textures)?])
+    Ok([
+        angles(recording)?,
+        areas(image, recording)?,
+        split(recording)?,
+    ])
 }
 
 /// `atan2(y, x)` of the direction through each texel of a cube, in 16 bits:
 /// 6 faces of 128^2, 196,608 bytes.
-fn angles(textures: &mut dyn TextureSource) -> Result<TextureId, TechniqueError> {
-    let texture = textures.create(&TextureDescriptor {
+fn angles(recording: &mut Recording) -> Result<TextureId, TechniqueError> {
+    let texture = recording.create(&TextureDescriptor {
         label: "angles".to_owned(),
         dimension: TextureDimension::Cube,
         format: Format::R16Sint,
@@ -50,7 +56,7 @@ fn angles(textures: &mut dyn TextureSource) -> Result<TextureId, TechniqueError>
             mip: 0,
             layer: face,
         };
-        textures.write(texture, image, &texels)?;
+        recording.write(texture, image, &texels)?;
     }
     Ok(texture)
 }
@@ -58,13 +64,13 @@ fn angles(textures: &mut dyn TextureSource) -> Result<TextureId, TechniqueError>
 /// Twice the share of the light between the rays at two angles, on the side where
 /// they are less than half a turn apart. 16 bits (a half float) for discs, 8 for
 /// squares.
-fn areas(image: Image, textures: &mut dyn TextureSource) -> Result<TextureId, TechniqueError> {
+fn areas(image: Image, recording: &mut Recording) -> Result<TextureId, TechniqueError> {
     let format = match image {
         Image::Square => Format::R8Unorm,
         Image::Disc => Format::R16Float,
     };
     let desc = TextureDescriptor::d2("areas", format, AREA_SIDE, AREA_SIDE);
-    let texture = textures.create(&desc)?;
+    let texture = recording.create(&desc)?;
     let angle = |k: u32| (2.0 * f64::from(k) / (f64::from(AREA_SIDE) - 1.0) - 1.0) * PI;
     let rows = (0..AREA_SIDE).flat_map(|row| (0..AREA_SIDE).map(move |c| (c, row)));
     let texel = |(c, row): (u32, u32)| {
@@ -72,7 +78,7 @@ fn areas(image: Image, textures: &mut dyn TextureSource) -> Result<TextureId, Te
         [2.0 * share as f32, 0.0, 0.0, 1.0]
     };
     let texels: Vec<[f32; 4]> = rows.map(texel).collect();
-    textures.write(texture, Subresource::default(), &texels)?;
+    recording.write(texture, Subresource::default(), &texels)?;
     Ok(texture)
 }
 
@@ -89,15 +95,15 @@ fn share_between(image: Image, from: f64, to: f64) -> f64 {
 }
 
 /// Bits of `round(4095 k / 1023)` three by three: 1024 texels, 4,096 bytes.
-fn split(textures: &mut dyn TextureSource) -> Result<TextureId, TechniqueError> {
+fn split(recording: &mut Recording) -> Result<TextureId, TechniqueError> {
     let desc = TextureDescriptor::d2("split", Format::Rgba8Unorm, SPLIT_ENTRIES, 1);
-    let texture = textures.create(&desc)?;
+    let texture = recording.create(&desc)?;
     let last = f64::from(SPLIT_ENTRIES - 1);
     let texel = |k: u32| {
         let v = (f64::from(FULL) * f64::from(k) / last).round_ties_even() as u32;
         [0, 3, 6, 9].map(|shift| (v >> shift & 7) as f32 / 255.0)
     };
     let texels: Vec<[f32; 4]> = (0..SPLIT_ENTRIES).map(texel).collect();
-    textures.write(texture, Subresource::default(), &texels)?;
+    recording.write(texture, Subresource::default(), &texels)?;
     Ok(texture)
 }

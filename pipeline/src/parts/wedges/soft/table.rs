@@ -2,13 +2,13 @@
 //! the four-dimensional texture of paper III (§3.2.3).
 
 use glam::{DVec2, DVec3};
-use gnomon_raster::{Format, Subresource, TextureDescriptor, TextureId};
+use gnomon_raster::{Format, Recording, Subresource, TextureDescriptor, TextureId};
 use gnomon_shaders::coverage::Image;
 use gnomon_shaders::coverage_table::CoverageTable;
 
 use super::light_image::LightImage;
 use crate::geometry::coverage::LightPlane;
-use crate::technique::{TechniqueError, TextureSource};
+use crate::technique::TechniqueError;
 
 /// What the light looks like.
 pub(crate) enum Contents {
@@ -23,7 +23,7 @@ pub(crate) enum Contents {
 pub(crate) fn create(
     table: &CoverageTable,
     contents: &Contents,
-    textures: &mut dyn TextureSource,
+    recording: &mut Recording,
 ) -> Result<TextureId, TechniqueError> {
     let side = table.size * table.size;
     let format = match contents {
@@ -31,8 +31,8 @@ pub(crate) fn create(
         Contents::Coloured(_) => Format::Rgba16Float,
     };
     let desc = TextureDescriptor::d2("coverage", format, side, side);
-    let texture = textures.create(&desc)?;
-    textures.write(texture, Subresource::default(), &entries(table, contents))?;
+    let texture = recording.create(&desc)?;
+    recording.write(texture, Subresource::default(), &entries(table, contents))?;
     Ok(texture)
 }
 

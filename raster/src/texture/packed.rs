@@ -1,0 +1,153 @@
+//! Images as bytes: exactly what is stored, rows from the top.
+//!
+//! A colour texel takes its format's bytes, little-endian, red first. A
+//! depth-stencil image is its depth plane (the 24-bit integer in 3 bytes, or the
+//! float's 4), then its stencil plane.
+
+use super::layout::Layout;
+use super::plane::{ColorBlocks, DepthPlane, Plane};
+use super::resource::{Subresource, Texture, image_size, pixels};
+use super::{HIZ_STALE, TextureDescriptor};
+use crate::error::Error;
+use crate::format::Format;
+
+/// Bits of 1.0, the largest depth that is stored as a float.
+const FLOAT_ONE: u32 = 0x3f80_0000;
+
+/// Bytes of image `s` of a texture.
+///
+/// # Errors
+/// There is no such image.
+pub(crate) fn packed_len(desc: &TextureDescriptor, s: Subresource) -> Result<usize, Error> {
+    let [width, height] = image_size(desc, s)?;
+    let texel = desc.format.bytes() as usize + usize::from(desc.format.is_depth_stencil());
+    Ok(width as usize * height as usize * texel)
+}
+
+/// Bytes of a colour channel.
+fn channel_bytes(format: Format) -> usize {
+    format.bytes() as usize / format.channels()
+}
+
+/// Appends a texel's raw channels.
+pub(crate) fn pack(format: Format, texel: [u32; 4], to: &mut Vec<u8>) {
+    let bytes = channel_bytes(format);
+    for channel in &texel[..format.channels()] {
+        to.extend_from_slice(&channel.to_le_bytes()[..bytes]);
+    }
+}
+
+fn unpack(format: Format, texel: &[u8]) -> [u32; 4] {
+    let mut channels = [0; 4];
+    for (channel, bytes) in channels
+        .iter_mut()
+        .zip(texel.chunks_exact(channel_bytes(format)))
+    {
+        *channel = integer(bytes);
+    }
+    channels
+}
+
+/// A little-endian integer of at most 4 bytes.
+fn integer(bytes: &[u8]) -> u32 {
+    bytes.iter().rev().fold(0, |v, b| v << 8 | u32::from(*b))
+}
+
+impl Texture {
+    /// An image as it is stored, as bytes: rows from the top, each texel in its
+    /// format's bytes, little-endian; of depth-stencil formats first all depths (3
+    /// bytes of D24, 4 of a float), then all stencils.
+    ///
+    /// # Errors
+    /// There is no such image.
+    pub fn read_packed(&self, s: Subresource) -> Result<Vec<u8>, Error> {
+        let mut bytes = Vec::with_capacity(packed_len(&self.desc, s)?);
+        let layout = &self.layouts[s.mip as usize];
+        match &self.planes[s.mip as usize][s.layer as usize] {
+            Plane::Color(blocks) => read_color(blocks, self.desc.format, layout, &mut bytes),
+            Plane::Depth(plane) => read_depth(plane, self.desc.format, layout, &mut bytes),
+            Plane::Lent => unreachable!("only while a command list is executed"),
+        }
+        Ok(bytes)
+    }
+
+    /// Replaces an image by bytes that [`Texture::read_packed`] gave: the same stored
+    /// integers, whatever they mean.
+    ///
+    /// # Errors
+    /// There is no such image, `bytes` has the wrong length, or a depth is not one of
+    /// 0..=1; nothing has been written then.
+    pub fn write_packed(&mut self, s: Subresource, bytes: &[u8]) -> Result<(), Error> {
+        check_packed(&self.desc, s, bytes)?;
+        let layout = &self.layouts[s.mip as usize];
+        match &mut self.planes[s.mip as usize][s.layer as usize] {
+            Plane::Color(blocks) => write_color(blocks, self.desc.format, layout, bytes),
+            Plane::Depth(plane) => write_depth(plane, self.desc.format, layout, bytes),
+            Plane::Lent => unreachable!("only while a command list is executed"),
+        }
+        Ok(())
+    }
+}
+
+/// Whether `bytes` may become image `s` of a texture.
+pub(crate) fn check_packed(
+    desc: &TextureDescriptor,
+    s: Subresource,
+    bytes: &[u8],
+) -> Result<(), Error> {
+    let expected = packed_len(desc, s)?;
+    if bytes.len() != expected {
+        return Err(Error::ByteCount {
+            texture: desc.label.clone(),
+            given: bytes.len(),
+            expected,
+        });
+    }
+    if desc.format != Format::Depth32FloatStencil8 {
+        return Ok(());
+    }
+    let depths = bytes[..expected / 5 * 4].chunks_exact(4).map(integer);
+    match depths.into_iter().find(|d| *d > FLOAT_ONE) {
+        None => Ok(()),
+        Some(bits) => Err(Error::StoredDepth {
+            texture: desc.label.clone(),
+            bits,
+        }),
+    }
+}
+
+fn read_color(blocks: &ColorBlocks, format: Format, layout: &Layout, to: &mut Vec<u8>) {
+    for (x, y) in pixels(layout) {
+        pack(format, blocks.get(format, layout.locate(x, y)), to);
+    }
+}
+
+fn read_depth(plane: &DepthPlane, format: Format, layout: &Layout, to: &mut Vec<u8>) {
+    let bytes = format.bytes() as usize;
+    for (x, y) in pixels(layout) {
+        let (block, pixel) = layout.locate(x, y);
+        to.extend_from_slice(&plane.depth[block].0[pixel].to_le_bytes()[..bytes]);
+    }
+    for (x, y) in pixels(layout) {
+        let (block, pixel) = layout.locate(x, y);
+        to.push(plane.stencil[block].0[pixel]);
+    }
+}
+
+fn write_color(blocks: &mut ColorBlocks, format: Format, layout: &Layout, bytes: &[u8]) {
+    let texels = bytes.chunks_exact(format.bytes() as usize);
+    for ((x, y), texel) in pixels(layout).zip(texels) {
+        blocks.set(format, layout.locate(x, y), unpack(format, texel));
+    }
+}
+
+fn write_depth(plane: &mut DepthPlane, format: Format, layout: &Layout, bytes: &[u8]) {
+    let each = format.bytes() as usize;
+    let (depths, stencils) = bytes.split_at(bytes.len() / (each + 1) * each);
+    for ((x, y), (depth, stencil)) in pixels(layout).zip(depths.chunks_exact(each).zip(stencils)) {
+        let (block, pixel) = layout.locate(x, y);
+        plane.depth[block].0[pixel] = integer(depth);
+        plane.stencil[block].0[pixel] = *stencil;
+        [plane.hiz.min[block], plane.hiz.max[block]] = HIZ_STALE;
+    }
+}

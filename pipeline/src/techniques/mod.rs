@@ -1,7 +1,8 @@
 //! The techniques, one file each, and the list of them.
 //!
 //! To add one, write its file here and add one line to [`all`]; command line,
-//! suites and tables pick it up from there.
+//! suites and tables pick it up from there. A crate of its own adds one to a
+//! [`Registry`] instead.
 
 mod convolution_soft_shadows;
 mod mixed_lights;
@@ -9,8 +10,8 @@ mod pcf;
 mod pcss;
 mod penumbra_wedges;
 pub(crate) mod penumbra_wedges_restructured;
+mod registry;
 mod sampled_shadow_volumes;
-pub mod scene_wedges;
 mod shadow_map;
 mod shadow_maps_n;
 mod shadow_volumes;
@@ -31,6 +32,9 @@ use shadow_volumes::ShadowVolumes;
 use soft_shadow_volumes::SoftShadowVolumes;
 use soft_shadow_volumes_optimised::SoftShadowVolumesOptimised;
 use unshadowed::Unshadowed;
+
+use registry::find_in;
+pub use registry::{Registry, RegistryError};
 
 use crate::technique::{Technique, TechniqueError};
 
@@ -54,21 +58,12 @@ pub fn all() -> &'static [&'static dyn Technique] {
     LIST
 }
 
-/// The technique called `name`.
+/// The built-in technique called `name`.
 ///
 /// # Errors
 /// There is none: the error lists all names and suggests the nearest.
 pub fn find(name: &str) -> Result<&'static dyn Technique, TechniqueError> {
-    let all = all();
-    if let Some(technique) = all.iter().find(|t| t.name() == name) {
-        return Ok(*technique);
-    }
-    let known: Vec<&'static str> = all.iter().map(|t| t.name()).collect();
-    Err(TechniqueError::Unknown {
-        name: name.to_owned(),
-        nearest: crate::world::error::nearest(name, &known),
-        known,
-    })
+    find_in(all(), name)
 }
 
 #[cfg(test)]

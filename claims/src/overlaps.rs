@@ -3,6 +3,8 @@
 
 use gnomon_raster::{AccessObserver, BlockAccess};
 
+use gnomon_pipeline::technique::{PassRole, Roles};
+
 use super::{Lab, ReproduceError};
 use gnomon_pipeline::world::scene::Scene;
 
@@ -11,6 +13,7 @@ pub(super) struct Overlaps {
     columns: usize,
     /// Writes of each pixel by the wedges of the group that is being drawn.
     writes: Vec<u32>,
+    roles: Roles,
 }
 
 impl Overlaps {
@@ -23,6 +26,7 @@ impl Overlaps {
         let mut counted = Self {
             columns: width,
             writes: vec![0; width * height],
+            roles: frame.roles,
         };
         gpu.submit_observed(&frame.recording.list, &mut counted)?;
         Ok(counted)
@@ -54,8 +58,8 @@ impl Overlaps {
 }
 
 impl AccessObserver for Overlaps {
-    fn render_pass(&mut self, _: usize, label: &str, accesses: &[BlockAccess]) {
-        if label == "wedges" {
+    fn render_pass(&mut self, pass: usize, _: &str, accesses: &[BlockAccess]) {
+        if self.roles.of_pass(pass) == PassRole::Wedges {
             accesses.iter().for_each(|a| self.count(a));
         }
     }
@@ -67,9 +71,13 @@ mod tests {
 
     #[test]
     fn accesses_are_counted_by_pixel() {
+        let mut roles = Roles::default();
+        roles.push(PassRole::HardCount, Vec::new());
+        roles.push(PassRole::Wedges, Vec::new());
         let mut counted = Overlaps {
             columns: 10,
             writes: vec![0; 100],
+            roles,
         };
         let mut access = BlockAccess {
             block: [1, 0],

@@ -92,7 +92,7 @@ fn halves_save_colour_traffic_and_shade_little_more() {
         let counters = wedges(&picture);
         let colour: u64 = counters.traffic.color.iter().map(|t| t.bytes()).sum();
         let stencil = counters.traffic.stencil.bytes();
-        let work = WedgeWork::of(&picture.report).unwrap();
+        let work = WedgeWork::of(&picture.report, &picture.roles).unwrap();
         println!("{set:?}: colour {colour} B, stencil {stencil} B, {work:?}");
         (colour, work)
     };

@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use gnomon_pipeline::measure::heat::{self, Heat};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::measure::wedge_work::WedgeWork;
-use gnomon_pipeline::technique::{Params, Technique};
-use gnomon_pipeline::techniques::scene_wedges::{self, SceneWedges};
+use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
 use gnomon_pipeline::techniques::{self, find};
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
@@ -76,7 +75,7 @@ impl Job {
         out: Option<PathBuf>,
     ) -> Result<Self, CliError> {
         check_overlays(args, &scene)?;
-        check_wedges(args, technique, &params)?;
+        check_wedges(args, technique)?;
         let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
         let out = out.unwrap_or_else(|| default_out(&scene.name, technique.name()));
         files::check_target(&out)?;
@@ -109,11 +108,7 @@ impl Job {
         if !self.overlays.iter().any(|(k, _)| *k == OverlayKind::Wedges) {
             return Ok(None);
         }
-        Ok(scene_wedges::of_scene(
-            &self.scene,
-            self.technique,
-            &self.params,
-        )?)
+        Ok(self.technique.wedges(&self.scene, &self.params)?)
     }
 
     fn heat(&self) -> Result<Option<Heat>, CliError> {
@@ -153,19 +148,13 @@ fn check_overlays(args: &RenderArgs, scene: &Scene) -> Result<(), CliError> {
 }
 
 /// Refuses the wedges of a technique that has none.
-fn check_wedges(
-    args: &RenderArgs,
-    technique: &dyn Technique,
-    params: &Params,
-) -> Result<(), CliError> {
+fn check_wedges(args: &RenderArgs, technique: &dyn Technique) -> Result<(), CliError> {
     let wanted = args.overlay.contains(&OverlayKind::Wedges);
-    if !wanted || scene_wedges::kind(technique, params).is_some() {
+    if !wanted || technique.capabilities().has_wedges() {
         return Ok(());
     }
-    let with_wedges = techniques::all().iter().filter(|t| {
-        let params = Params::defaults(**t);
-        scene_wedges::kind(**t, &params).is_some()
-    });
+    let all = techniques::all().iter();
+    let with_wedges = all.filter(|t| t.capabilities().has_wedges());
     let names: Vec<&str> = with_wedges.map(|t| t.name()).collect();
     Err(CliError::Flag {
         flag: "--overlay",
@@ -265,7 +254,7 @@ fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
     text += &tables::work(&frame).to_text();
     text.push('\n');
     text += &tables::traffic(&frame).to_text();
-    if let Some(work) = WedgeWork::of(&done.report) {
+    if let Some(work) = WedgeWork::of(&done.report, &done.roles) {
         text += &format!(
             "\nwedges shaded {} fragments for {} pairs of a pixel and a penumbra that it is in: {:.2} times\n",
             numbers::count(work.shaded),

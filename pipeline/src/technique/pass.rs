@@ -136,13 +136,13 @@ impl Roles {
     }
 
     /// Adds the roles of another pass.
-    pub(crate) fn push(&mut self, role: PassRole, draws: Vec<DrawRole>) {
+    pub fn push(&mut self, role: PassRole, draws: Vec<DrawRole>) {
         self.passes.push(role);
         self.draws.push(draws);
     }
 
     /// Adds those of another frame behind these.
-    pub(crate) fn append(&mut self, mut other: Self) {
+    pub fn append(&mut self, mut other: Self) {
         self.passes.append(&mut other.passes);
         self.draws.append(&mut other.draws);
     }

@@ -186,7 +186,7 @@ impl References {
 }
 
 fn highlights(entry: &Entry) -> bool {
-    entry.params.get("shading") != "lambert"
+    entry.params.text("shading") != Some("lambert")
 }
 
 /// Share of the map's energy that is ambient light.

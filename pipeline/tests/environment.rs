@@ -12,7 +12,7 @@ use gnomon_pipeline::world::environment::{Environment, FitSettings, MapSettings,
 use gnomon_pipeline::world::light::HardLight;
 use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
-use gnomon_raster::{Gpu, GpuConfig, SimdLevel, Subresource, TextureDescriptor, TextureId};
+use gnomon_raster::{GpuConfig, SimdLevel};
 
 /// A scene under the procedural sky.
 fn under_sky(scene: &str, fit: FitSettings) -> Scene {

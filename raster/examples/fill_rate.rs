@@ -1,7 +1,9 @@
 //! Fill-rate microbenchmarks: the cases of the peers' `gl_fill_rate.py`, with
-//! counting on. Prints million fragments and triangles per second.
+//! counting on, and every colour format, opaque and added, of one colour and shaded.
+//! Prints million fragments and triangles per second.
 //!
-//! `fill_rate [--threads N] [--simd LEVEL] [--tile N] [--budget SECONDS] [--case NAME] [--mesh large|small] [--json FILE]`
+//! `fill_rate [--threads N] [--simd LEVEL] [--tile N] [--budget SECONDS] [--case NAME|formats]
+//! [--mesh large|small] [--json FILE]`
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 
@@ -79,6 +81,17 @@ impl FragmentShader for Sixty {
     }
 }
 
+/// A colour that differs from pixel to pixel and costs next to nothing.
+struct Gradient;
+
+impl FragmentShader for Gradient {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let v = f.varying(0) * (1.0 / 64.0);
+        f.set_color(0, [v, v, v, F32::splat(l, 0.01)]);
+    }
+}
+
 /// Vertices in NDC and indices of an n×n grid of squares of `pixels` each.
 fn grid(n: u32, pixels: f64) -> (VertexBuffer, IndexBuffer) {
     let at = |i: u32| (f64::from(i) * pixels * 2.0 / f64::from(SIZE) - 1.0) as f32;
@@ -95,8 +108,10 @@ fn grid(n: u32, pixels: f64) -> (VertexBuffer, IndexBuffer) {
     (VertexBuffer { data, stride: 2 }, IndexBuffer::new(indices))
 }
 
+#[derive(Clone)]
 struct Case {
-    name: &'static str,
+    name: String,
+    format: Format,
     clear_depth: f32,
     z0: f32,
     dz: f32,
@@ -144,7 +159,8 @@ fn cases() -> Vec<Case> {
     let sixty = || Some(Sixty([0.97, 0.011]).into());
     let linear: &[Interpolation] = &[Interpolation::Perspective];
     let case = |name, clear_depth, z0, dz, ds, target, fragment, varyings| Case {
-        name,
+        name: str::to_owned(name),
+        format: Format::Rgba8Unorm,
         clear_depth,
         z0,
         dz,
@@ -238,21 +254,74 @@ fn cases() -> Vec<Case> {
     ]
 }
 
+/// Every colour format: opaque and, where it can be, added; one colour, and shaded.
+fn format_cases() -> Vec<Case> {
+    let plain = Case {
+        name: String::new(),
+        format: Format::Rgba8Unorm,
+        clear_depth: 1.0,
+        z0: 0.5,
+        dz: 0.0,
+        ds: DepthStencilState::default(),
+        target: ColorTargetState::OPAQUE,
+        fragment: None,
+        varyings: &[],
+    };
+    let mut cases = Vec::new();
+    for format in Format::ALL {
+        if format.is_depth_stencil() {
+            continue;
+        }
+        let name = format!("{format:?}").to_lowercase();
+        let name = name.trim_end_matches("unorm");
+        for (blend, target) in [
+            ("opaque", ColorTargetState::OPAQUE),
+            ("add", ColorTargetState::ADDITIVE),
+        ] {
+            if target.blend.is_some() && !format.is_blendable() {
+                continue;
+            }
+            cases.push(Case {
+                name: format!("{name}_{blend}"),
+                format,
+                target,
+                fragment: Some(Constant([0.01, 0.02, 0.03, 0.01]).into()),
+                ..plain.clone()
+            });
+            cases.push(Case {
+                name: format!("{name}_shaded_{blend}"),
+                format,
+                target,
+                fragment: Some(Gradient.into()),
+                varyings: &[Interpolation::Linear],
+                ..plain.clone()
+            });
+        }
+    }
+    cases
+}
+
 struct Bench {
     gpu: Gpu,
-    color: TextureId,
+    /// An image of each colour format.
+    colors: Vec<(Format, TextureId)>,
     depth: TextureId,
     budget: Duration,
 }
 
 impl Bench {
-    fn pass(&self, load: Option<f32>, draws: Vec<Draw>) -> CommandList {
+    fn color(&self, format: Format) -> TextureId {
+        let mut of = self.colors.iter().filter(|c| c.0 == format);
+        of.next().expect("every colour format").1
+    }
+
+    fn pass(&self, format: Format, load: Option<f32>, draws: Vec<Draw>) -> CommandList {
         let color = match load {
             Some(_) => LoadOp::Clear([0.0; 4]),
             None => LoadOp::Load,
         };
         let attachment = ColorAttachment {
-            texture: self.color,
+            texture: self.color(format),
             subresource: Subresource::default(),
             load: color,
             store: StoreOp::Store,
@@ -282,7 +351,7 @@ impl Bench {
         layers: u32,
     ) -> (f64, u64, u64) {
         let pipeline = Arc::new(RenderPipeline {
-            label: case.name.into(),
+            label: case.name.clone(),
             vertex: Layers {
                 z0: case.z0,
                 dz: case.dz,
@@ -294,10 +363,10 @@ impl Bench {
             depth_stencil: case.ds,
             color_targets: vec![case.target],
         });
-        let mut draw = Draw::indexed(case.name, &pipeline, &mesh.0, &mesh.1);
+        let mut draw = Draw::indexed(&case.name, &pipeline, &mesh.0, &mesh.1);
         draw.instances = layers;
-        let clear = self.pass(Some(case.clear_depth), vec![]);
-        let fill = self.pass(None, vec![draw]);
+        let clear = self.pass(case.format, Some(case.clear_depth), vec![]);
+        let fill = self.pass(case.format, None, vec![draw]);
         let mut times = Vec::new();
         let end = Instant::now() + self.budget;
         let mut counted = (0, 0);
@@ -337,14 +406,13 @@ fn main() {
         }
     }
     let mut gpu = Gpu::new(config).expect("valid");
-    let color = gpu
-        .create_texture(&TextureDescriptor::d2(
-            "colour",
-            Format::Rgba8Unorm,
-            SIZE,
-            SIZE,
-        ))
-        .expect("valid");
+    let mut colors = Vec::new();
+    for format in Format::ALL {
+        if !format.is_depth_stencil() {
+            let image = TextureDescriptor::d2("colour", format, SIZE, SIZE);
+            colors.push((format, gpu.create_texture(&image).expect("valid")));
+        }
+    }
     let depth = TextureDescriptor::d2("depth", Format::Depth24Stencil8, SIZE, SIZE);
     let depth = gpu.create_texture(&depth).expect("valid");
     println!(
@@ -355,7 +423,7 @@ fn main() {
     );
     let mut bench = Bench {
         gpu,
-        color,
+        colors,
         depth,
         budget: Duration::from_secs_f64(budget),
     };
@@ -365,7 +433,15 @@ fn main() {
     ];
     let meshes = meshes.map(|(n, (v, i), layers)| (n, (Arc::new(v), Arc::new(i)), layers));
     let mut rows = String::new();
-    for case in cases().iter().filter(|c| only.is_empty() || only == c.name) {
+    let chosen: Vec<Case> = match only.as_str() {
+        "" => [cases(), format_cases()].concat(),
+        "formats" => format_cases(),
+        name => {
+            let all = [cases(), format_cases()].concat();
+            all.into_iter().filter(|c| c.name == name).collect()
+        }
+    };
+    for case in &chosen {
         for (name, mesh, layers) in meshes
             .iter()
             .filter(|m| only_mesh.is_empty() || only_mesh == m.0)
@@ -376,7 +452,7 @@ fn main() {
                 triangles as f64 / seconds / 1e6,
             );
             println!(
-                "{:<14} {name:<5} {mf:9.1} Mfragment/s  {mt:8.3} Mtriangle/s  {:8.3} ms",
+                "{:<24} {name:<5} {mf:9.1} Mfragment/s  {mt:8.3} Mtriangle/s  {:8.3} ms",
                 case.name,
                 seconds * 1e3
             );

@@ -3,7 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::shader::{FragmentStage, VertexStage};
-use crate::state::{ColorTargetState, DepthStencilState, PrimitiveState, ScissorRect, Viewport};
+use crate::state::{
+    ColorTargetState, DepthStencilState, PrimitiveState, Sampler, ScissorRect, Viewport,
+};
 use crate::texture::{Subresource, TextureId};
 
 /// What an attachment holds when the pass begins.
@@ -187,86 +189,6 @@ impl IndexBuffer {
     }
 }
 
-/// How a texture coordinate outside 0..=1 is mapped.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AddressMode {
-    /// To the nearest edge texel.
-    #[default]
-    ClampToEdge,
-    /// To the sampler's border colour.
-    ClampToBorder,
-    /// Modulo 1.
-    Repeat,
-    /// Modulo 2, the odd half reversed.
-    MirrorRepeat,
-}
-
-/// How texels become a value.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FilterMode {
-    /// The nearest texel.
-    #[default]
-    Nearest,
-    /// Linear between the nearest texels.
-    Linear,
-}
-
-/// How a texture is read.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampler {
-    /// In u, v and w.
-    pub address: [AddressMode; 3],
-    /// Where a texel is larger than a pixel.
-    pub mag: FilterMode,
-    /// Where a texel is smaller than a pixel.
-    pub min: FilterMode,
-    /// Between mip levels.
-    pub mip: FilterMode,
-    /// Smallest and largest level of detail.
-    pub lod: [f32; 2],
-    /// Added to the level of detail.
-    pub lod_bias: f32,
-    /// For [`AddressMode::ClampToBorder`].
-    pub border: [f32; 4],
-}
-
-impl Default for Sampler {
-    fn default() -> Self {
-        Self {
-            address: [AddressMode::ClampToEdge; 3],
-            mag: FilterMode::Nearest,
-            min: FilterMode::Nearest,
-            mip: FilterMode::Nearest,
-            lod: [0.0, 1000.0],
-            lod_bias: 0.0,
-            border: [0.0; 4],
-        }
-    }
-}
-
-impl Sampler {
-    /// Linear in every direction and between levels.
-    #[must_use]
-    pub fn trilinear() -> Self {
-        Self {
-            mag: FilterMode::Linear,
-            min: FilterMode::Linear,
-            mip: FilterMode::Linear,
-            ..Self::default()
-        }
-    }
-
-    /// Linear in the image, nearest level.
-    #[must_use]
-    pub fn bilinear() -> Self {
-        Self {
-            mag: FilterMode::Linear,
-            min: FilterMode::Linear,
-            ..Self::default()
-        }
-    }
-}
-
 /// A texture in a slot of a draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureBinding {
@@ -274,12 +196,6 @@ pub struct TextureBinding {
     pub texture: TextureId,
     /// How it is read.
     pub sampler: Sampler,
-}
-
-/// A texture and sampler while a pass is executed.
-pub(crate) struct BoundTexture<'a> {
-    pub(crate) texture: &'a crate::texture::Texture,
-    pub(crate) sampler: Sampler,
 }
 
 /// One draw call.

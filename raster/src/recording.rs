@@ -26,9 +26,9 @@ use std::sync::Arc;
 
 use crate::command::CommandList;
 use crate::error::Error;
+use crate::format::encode;
 use crate::texture::{
-    Subresource, Texture, TextureDescriptor, TextureId, check_packed, encode, image_size, pack,
-    validate,
+    Subresource, Texture, TextureDescriptor, TextureId, check_packed, image_size, pack, validate,
 };
 
 /// A frame: its textures, its commands, and where its results are afterwards.
@@ -225,12 +225,13 @@ impl RecordedTexture {
 mod tests {
     use super::*;
     use crate::command::{
-        ColorAttachment, DepthStencilAttachment, Draw, LoadOp, RenderPass, RenderPipeline, Sampler,
-        StoreOp, TextureBinding,
+        ColorAttachment, DepthStencilAttachment, Draw, LoadOp, RenderPass, RenderPipeline, StoreOp,
+        TextureBinding,
     };
     use crate::format::Format;
     use crate::gpu::{Gpu, GpuConfig};
     use crate::shader::{ScalarVertexOutput, per_vertex};
+    use crate::state::Sampler;
     use crate::state::{DepthStencilState, PrimitiveState};
     use crate::texture::TextureDimension;
 

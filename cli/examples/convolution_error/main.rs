@@ -15,14 +15,10 @@
 mod charts;
 mod measure;
 
-// The program's own plots; an example sees no private module otherwise.
-#[allow(dead_code, unused_imports, reason = "plots need a part of it")]
-#[path = "../../src/draw/mod.rs"]
-mod draw;
-
 use std::error::Error;
 use std::path::Path;
 
+use gnomon::draw::plot;
 use gnomon_pipeline::world::scene;
 
 use measure::{Row, measure};
@@ -51,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let write = |name: &str, text: &str| std::fs::write(Path::new(&folder).join(name), text);
     write("convolution.csv", &measure::csv(&rows))?;
     for chart in charts::all(&rows) {
-        write(&format!("{}.svg", chart.name), &draw::plot::svg(&chart))?;
+        write(&format!("{}.svg", chart.name), &plot::svg(&chart))?;
     }
     if let Some(worst) = rows
         .iter()

@@ -8,11 +8,11 @@ use super::font;
 
 /// An opaque RGBA image, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Picture {
+pub struct Picture {
     /// Width and height in pixels.
-    pub(crate) size: [u32; 2],
+    pub size: [u32; 2],
     /// Row by row.
-    pub(crate) pixels: Vec<[u8; 4]>,
+    pub pixels: Vec<[u8; 4]>,
 }
 
 /// Colour, width and opacity of a line.

@@ -5,11 +5,12 @@ pub(crate) mod diverging;
 mod font;
 mod grid;
 mod legend;
-pub(crate) mod plot;
+pub mod plot;
 mod projection;
 mod ramp;
 
-pub(crate) use canvas::{Canvas, Picture, Stroke};
+pub use canvas::Picture;
+pub(crate) use canvas::{Canvas, Stroke};
 pub(crate) use grid::{Cell, Grid};
 pub(crate) use legend::{Legend, Swatch};
 pub(crate) use projection::{Pixel, Projection};

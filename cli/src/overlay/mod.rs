@@ -1,6 +1,7 @@
 //! Pictures that explain a render, one file each.
 
 mod env_lights;
+mod kind;
 mod overdraw;
 mod sides;
 mod silhouette;
@@ -14,8 +15,8 @@ use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::{Params, SceneWedges};
 use gnomon_pipeline::world::scene::Scene;
 
-use crate::args::OverlayKind;
 use crate::draw::Picture;
+pub(crate) use kind::OverlayKind;
 
 /// What overlays are drawn from.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! One file per verb.
+//! One file or folder per verb.
 
 pub(crate) mod compare;
 pub(crate) mod demo;

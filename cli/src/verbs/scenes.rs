@@ -4,8 +4,8 @@ use gnomon_pipeline::world::scene::Scene;
 use gnomon_pipeline::world::scene::builtin::{BuiltinScene, SCENES};
 use serde::Serialize;
 
-use crate::args::ListArgs;
 use crate::error::CliError;
+use crate::flags::ListArgs;
 use crate::output;
 use crate::output::wrap::hanging;
 

@@ -8,8 +8,8 @@ use gnomon_pipeline::techniques;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use crate::args::ListArgs;
 use crate::error::CliError;
+use crate::flags::ListArgs;
 use crate::output;
 use crate::output::wrap::hanging;
 

@@ -1,10 +1,11 @@
 //! A draw's state, translated once for the geometry and the tile stage.
 
-use crate::command::{BoundTexture, Draw};
+use crate::command::Draw;
 use crate::counters::AccessSizes;
 use crate::format::{self, Format};
 use crate::geometry::{DepthEncoding, GeometryState, ViewportTransform};
 use crate::gpu::Gpu;
+use crate::sampling::BoundTexture;
 use crate::shader::{ErasedFragmentShader, FragmentOutputs, Interpolation};
 use crate::state::{CompareFunction, DepthStencilState, Viewport};
 use crate::texture::Texture;

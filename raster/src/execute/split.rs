@@ -2,11 +2,10 @@
 
 use crate::command::{LoadOp, RenderPass, StoreOp};
 use crate::counters::{AccessSizes, ClientTraffic, Traffic, packed_word_bytes};
-use crate::format::Format;
+use crate::format::{Format, encode, encode_depth};
 use crate::gpu::Gpu;
 use crate::texture::{
-    Block, Block4, ColorBlocks, DepthPlane, Layout, Plane, Subresource, TextureId, encode,
-    encode_depth,
+    Block, Block4, ColorBlocks, DepthPlane, Layout, Plane, Subresource, TextureId,
 };
 use crate::tile::{ColorTile, DepthTile, TileTarget};
 

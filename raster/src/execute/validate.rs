@@ -1,10 +1,11 @@
 //! Everything that can be wrong with a render pass, found before anything runs.
 
-use crate::command::{Draw, IndexBuffer, RenderPass, Sampler};
+use crate::command::{Draw, IndexBuffer, RenderPass};
 use crate::error::Error;
 use crate::format::Format;
 use crate::geometry::{GUARD_MAX, GUARD_MIN};
 use crate::gpu::Gpu;
+use crate::state::Sampler;
 use crate::state::{BlendFactor, BlendState, DepthStencilState, ScissorRect, Viewport};
 use crate::texture::{Texture, TextureId};
 use crate::{

@@ -1,6 +1,6 @@
 //! The fragment stage over lanes.
 
-use crate::command::BoundTexture;
+use crate::sampling::BoundTexture;
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32};
 use crate::tile::COUNT;
 use crate::tile::ShaderDepth;

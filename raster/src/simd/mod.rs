@@ -14,14 +14,12 @@
 
 mod double;
 mod float;
-mod half;
 mod int;
 mod level;
 mod mask;
 
 pub(crate) use double::{F64, round_to_i32};
 pub use float::F32;
-pub(crate) use half::{float_from_half, half_from_float};
 pub use int::{I32, U32};
 pub(crate) use level::with_lanes;
 pub use level::{SimdLevel, UnknownSimdLevel};

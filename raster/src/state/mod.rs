@@ -6,6 +6,7 @@
 mod blend;
 mod depth_stencil;
 mod primitive;
+mod sampler;
 
 pub use blend::{
     BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
@@ -17,3 +18,4 @@ pub use depth_stencil::{
 pub use primitive::{
     CullMode, FrontFace, PrimitiveState, PrimitiveTopology, ScissorRect, Viewport,
 };
+pub use sampler::{AddressMode, FilterMode, Sampler};

@@ -1,9 +1,8 @@
 //! Smaller levels from larger ones, on the CPU.
 
-use super::resource::{decode, encode};
 use super::{Subresource, Texture, TextureDimension};
 use crate::error::Error;
-use crate::format::Format;
+use crate::format::{Format, decode, encode};
 
 /// One source texel's share in a destination texel, along one axis.
 struct Share {
@@ -82,7 +81,7 @@ impl Level {
 fn numbers(format: Format, raw: [u32; 4]) -> [f64; 4] {
     match format {
         Format::R32Uint => [f64::from(raw[0]), 0.0, 0.0, 0.0],
-        _ => decode(format, raw).0.map(f64::from),
+        _ => decode(format, raw).map(f64::from),
     }
 }
 

@@ -1,17 +1,10 @@
 //! Textures: block-linear storage shared by attachments and sampled images.
 
-mod address;
-mod cube;
-mod fetch;
 pub(crate) mod layout;
-mod lod;
 mod mipmap;
 mod packed;
 mod plane;
 mod resource;
-mod sample;
-#[cfg(test)]
-mod twin;
 
 pub use layout::BLOCK;
 pub(crate) use layout::Layout;
@@ -20,4 +13,4 @@ pub(crate) use plane::{Block, Block4, ColorBlocks, DepthPlane, HIZ_STALE, Plane}
 pub use resource::{
     ColorTexel, Subresource, Texture, TextureDescriptor, TextureDimension, TextureId,
 };
-pub(crate) use resource::{encode, encode_depth, image_size, validate};
+pub(crate) use resource::{image_size, validate};

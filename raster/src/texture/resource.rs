@@ -3,7 +3,7 @@
 use super::plane::{ColorBlocks, DepthPlane, Plane};
 use super::{HIZ_STALE, Layout};
 use crate::error::Error;
-use crate::format::{self, Format};
+use crate::format::{self, Format, decode, encode, encode_depth};
 use crate::{MAX_TEXTURE_BYTES, MAX_TEXTURE_SIZE};
 
 /// Names a texture of a [`crate::Gpu`].
@@ -167,7 +167,7 @@ impl Texture {
         Ok(self
             .read_raw(s)?
             .into_iter()
-            .map(|t| decode(self.desc.format, t))
+            .map(|t| ColorTexel(decode(self.desc.format, t)))
             .collect())
     }
 
@@ -295,54 +295,6 @@ impl Texture {
         }
         Ok(())
     }
-}
-
-/// Depth in 0..=1 as a stored integer; NaN and −0 become 0.
-pub(crate) fn encode_depth(f: Format, v: f32) -> u32 {
-    if f == Format::Depth24Stencil8 {
-        return format::d24_from_f32(v);
-    }
-    let c = if v > 0.0 { v } else { 0.0 };
-    (if c < 1.0 { c } else { 1.0 }).to_bits()
-}
-
-/// A shader's output as raw channels.
-pub(crate) fn encode(f: Format, v: [f32; 4]) -> [u32; 4] {
-    match f {
-        Format::R8Unorm => [u32::from(format::unorm8_from_f32(v[0])), 0, 0, 0],
-        Format::Rg8Unorm => [
-            u32::from(format::unorm8_from_f32(v[0])),
-            u32::from(format::unorm8_from_f32(v[1])),
-            0,
-            0,
-        ],
-        Format::Rgba8Unorm => v.map(|c| u32::from(format::unorm8_from_f32(c))),
-        Format::R16Sint => [u32::from(format::i16_from_f32(v[0]) as u16), 0, 0, 0],
-        Format::R16Float => [u32::from(format::f16_from_f32(v[0])), 0, 0, 0],
-        Format::Rgba16Float => v.map(|c| u32::from(format::f16_from_f32(c))),
-        Format::R32Float => [format::canonical_nan(v[0]).to_bits(), 0, 0, 0],
-        Format::Rgba32Float => v.map(|c| format::canonical_nan(c).to_bits()),
-        Format::R32Uint => [v[0].to_bits(), 0, 0, 0],
-        Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => [0; 4],
-    }
-}
-
-/// Raw channels as floats; missing colour channels are 0, missing alpha 1.
-pub(crate) fn decode(f: Format, t: [u32; 4]) -> ColorTexel {
-    let u = |c: u32| format::f32_from_unorm8(c as u8);
-    let h = |c: u32| format::f32_from_f16(c as u16);
-    ColorTexel(match f {
-        Format::R8Unorm => [u(t[0]), 0.0, 0.0, 1.0],
-        Format::Rg8Unorm => [u(t[0]), u(t[1]), 0.0, 1.0],
-        Format::Rgba8Unorm => t.map(u),
-        Format::R16Sint => [f32::from(t[0] as u16 as i16), 0.0, 0.0, 1.0],
-        Format::R16Float => [h(t[0]), 0.0, 0.0, 1.0],
-        Format::Rgba16Float => t.map(h),
-        Format::R32Float => [f32::from_bits(t[0]), 0.0, 0.0, 1.0],
-        Format::Rgba32Float => t.map(f32::from_bits),
-        Format::R32Uint => [t[0] as f32, 0.0, 0.0, 1.0],
-        Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => [0.0; 4],
-    })
 }
 
 /// Every pixel, row by row from the top.

@@ -1,8 +1,8 @@
 //! A draw's state in the form in which the tile stage uses it.
 
-use crate::command::BoundTexture;
 use crate::format::{Format, unorm8_from_f32};
 use crate::geometry::{DepthEncoding, Triangle};
+use crate::sampling::BoundTexture;
 use crate::shader::ErasedFragmentShader;
 use crate::state::{BlendState, ColorWrites, CompareFunction, StencilFaceState, StencilOperation};
 

@@ -6,11 +6,10 @@ use super::block::{self, Env, Place};
 use super::config::TargetConfig;
 use super::target::ColorTile;
 use super::{COUNT, TileStageCounters};
+use crate::format::lanes::{float_from_half, half_from_float};
 use crate::format::{self, Format};
 use crate::shader::{PACKETS, PacketOutput};
-use crate::simd::{
-    F32, I32, LANES, Lanes, Mask, U32, each4, float_from_half, half_from_float, outlined,
-};
+use crate::simd::{F32, I32, LANES, Lanes, Mask, U32, each4, outlined};
 use crate::state::{BlendComponent, BlendFactor, BlendOperation, BlendState, ColorWrites};
 
 /// Writes the outputs of the fragments of `live` to every colour target.

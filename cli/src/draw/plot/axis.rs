@@ -66,8 +66,11 @@ fn linear(low: f64, high: f64) -> Range {
     }
 }
 
-/// A little more than the values take; ticks at decades, and at 2 and 5 times
-/// where there are few.
+/// Ticks that have room for their labels.
+const MOST_TICKS: usize = 10;
+
+/// A little more than the values take; ticks at decades, at 2 and 5 times where there
+/// are few, at every few of them where there are many.
 fn decades(low: f64, high: f64) -> Range {
     let pad = (0.05 * (high - low)).max(0.05);
     let ends = [low - pad, high + pad];
@@ -81,7 +84,13 @@ fn decades(low: f64, high: f64) -> Range {
     let ticks = match whole.len() {
         0..=1 => with(&[1.0, 2.0, 3.0, 4.0, 6.0, 8.0]),
         2..=3 => with(&[1.0, 2.0, 5.0]),
-        _ => whole,
+        0..=MOST_TICKS => whole,
+        count => {
+            let step = count.div_ceil(MOST_TICKS) as i32;
+            let shown = powers.clone().filter(|p| p.rem_euclid(step) == 0);
+            let values = shown.map(|p| power_of(10.0, p));
+            values.filter(inside).collect()
+        }
     };
     Range {
         scale: Scale::Log10,
@@ -155,6 +164,9 @@ mod tests {
         assert!((a + b - 1.0).abs() < 1e-12 && a > 0.0);
         let close = Range::new(Scale::Log10, [0.011, 0.042].into_iter());
         assert!(close.ticks.len() >= 3, "{:?}", close.ticks);
+        let far = Range::new(Scale::Log10, [1e-15, 1e16].into_iter());
+        assert_eq!(far.ticks.len(), 8, "{:?}", far.ticks);
+        assert!(far.ticks.contains(&1.0) && far.ticks.contains(&1e-12));
         let one = Range::new(Scale::Log10, [5.0].into_iter());
         assert!((one.place(5.0).unwrap() - 0.5).abs() < 1e-12);
         let twos = Range::new(Scale::Log2, [2.0, 16.0].into_iter());

@@ -96,16 +96,16 @@ impl Layout {
             y: Range::new(chart.y.scale, values(1)),
         };
         let mut items = Vec::new();
-        plot.grid(chart, &mut items);
+        plot.draw_grid(chart, &mut items);
         let mut labels = Vec::new();
         for (k, series) in chart.series.iter().enumerate() {
-            let hidden = plot.series(series, COLOURS[k % COLOURS.len()], &mut items);
+            let hidden = plot.draw_series(series, Look::of(k, series.mark), &mut items);
             labels.push(match hidden {
                 0 => series.label.clone(),
                 n => format!("{} ({n} not shown)", series.label),
             });
         }
-        let legend_width = legend(chart, &labels, &mut items);
+        let legend_width = draw_legend(chart, &labels, &mut items);
         let width = LEFT + AREA[0] + GAP + legend_width + GAP;
         let width = width.max(text_width(&chart.title) + 2.0 * GAP);
         Self {
@@ -138,7 +138,7 @@ impl Plot {
     }
 
     /// Title, ticks with their lines and labels, axes.
-    fn grid(&self, chart: &Chart, items: &mut Vec<Item>) {
+    fn draw_grid(&self, chart: &Chart, items: &mut Vec<Item>) {
         let [right, bottom] = [LEFT + AREA[0], TOP + AREA[1]];
         let text = |at, anchor, text: &str| Item::Text {
             at,
@@ -178,67 +178,89 @@ impl Plot {
         items.push(text(middle, Anchor::Middle, &chart.x.label));
     }
 
-    /// Draws a series; how many of its points cannot be shown.
-    fn series(&self, series: &Series, colour: [u8; 3], items: &mut Vec<Item>) -> usize {
-        let points: Vec<[f32; 2]> = series.points.iter().filter_map(|p| self.at(*p)).collect();
+    /// Draws a series, its line interrupted where a point cannot be shown; how many
+    /// cannot.
+    fn draw_series(&self, series: &Series, look: Look, items: &mut Vec<Item>) -> usize {
+        let places: Vec<Option<[f32; 2]>> = series.points.iter().map(|p| self.at(*p)).collect();
+        if look.has_line() {
+            let runs = places.split(Option::is_none).filter(|run| run.len() > 1);
+            items.extend(runs.map(|run| look.line(run.iter().flatten().copied().collect())));
+        }
         let bottom = TOP + AREA[1];
-        if matches!(series.mark, Mark::Line | Mark::Dashed) {
-            items.push(Item::Line {
-                points: points.clone(),
+        let shown = places.iter().flatten();
+        items.extend(shown.clone().filter_map(|at| look.mark_at(*at, bottom)));
+        places.len() - shown.count()
+    }
+}
+
+/// How a series looks, in the plot and in the legend.
+#[derive(Clone, Copy)]
+struct Look {
+    mark: Mark,
+    colour: [u8; 3],
+    dashed: bool,
+}
+
+impl Look {
+    /// Of series number `k`: colours in turn, then once more with dashed lines.
+    fn of(k: usize, mark: Mark) -> Self {
+        Self {
+            mark,
+            colour: COLOURS[k % COLOURS.len()],
+            dashed: mark == Mark::Dashed || k / COLOURS.len() % 2 == 1,
+        }
+    }
+
+    fn has_line(self) -> bool {
+        matches!(self.mark, Mark::Line | Mark::Dashed)
+    }
+
+    fn line(self, points: Vec<[f32; 2]>) -> Item {
+        Item::Line {
+            points,
+            colour: self.colour,
+            width: 2.5,
+            dashed: self.dashed,
+        }
+    }
+
+    /// What stands at a point, if anything does; bars reach down to `bottom`.
+    fn mark_at(self, at: [f32; 2], bottom: f32) -> Option<Item> {
+        let colour = self.colour;
+        match self.mark {
+            Mark::Line | Mark::Dots => Some(Item::Dot {
+                at,
+                radius: 4.5,
                 colour,
-                width: 2.5,
-                dashed: series.mark == Mark::Dashed,
-            });
+            }),
+            Mark::Bars => Some(Item::Bar {
+                at: [at[0] - 3.0, at[1]],
+                size: [6.0, bottom - at[1]],
+                colour,
+            }),
+            Mark::Dashed => None,
         }
-        for &at in &points {
-            match series.mark {
-                Mark::Line | Mark::Dots => items.push(Item::Dot {
-                    at,
-                    radius: 4.5,
-                    colour,
-                }),
-                Mark::Bars => items.push(Item::Bar {
-                    at: [at[0] - 3.0, at[1]],
-                    size: [6.0, bottom - at[1]],
-                    colour,
-                }),
-                Mark::Dashed => (),
-            }
-        }
-        series.points.len() - points.len()
     }
 }
 
 /// A sample and the label of each series, to the right of the area; its width.
-fn legend(chart: &Chart, labels: &[String], items: &mut Vec<Item>) -> f32 {
+fn draw_legend(chart: &Chart, labels: &[String], items: &mut Vec<Item>) -> f32 {
     const SAMPLE: f32 = 30.0;
     let left = LEFT + AREA[0] + GAP;
     let mut widest: f32 = 0.0;
     for (k, (series, label)) in chart.series.iter().zip(labels).enumerate() {
-        let colour = COLOURS[k % COLOURS.len()];
+        let look = Look::of(k, series.mark);
         let y = TOP + 8.0 + LINE_HEIGHT * k as f32;
-        let middle = [left + 0.5 * SAMPLE, y];
-        if matches!(series.mark, Mark::Line | Mark::Dashed) {
-            items.push(Item::Line {
-                points: vec![[left, y], [left + SAMPLE, y]],
-                colour,
-                width: 2.5,
-                dashed: series.mark == Mark::Dashed,
-            });
+        if look.has_line() {
+            items.push(look.line(vec![[left, y], [left + SAMPLE, y]]));
         }
-        match series.mark {
-            Mark::Line | Mark::Dots => items.push(Item::Dot {
-                at: middle,
-                radius: 4.5,
-                colour,
-            }),
-            Mark::Bars => items.push(Item::Bar {
-                at: [middle[0] - 3.0, y - 7.0],
-                size: [6.0, 14.0],
-                colour,
-            }),
-            Mark::Dashed => (),
-        }
+        // A bar of the legend stands on the line of its text.
+        let top = if series.mark == Mark::Bars {
+            y - 7.0
+        } else {
+            y
+        };
+        items.extend(look.mark_at([left + 0.5 * SAMPLE, top], y + 7.0));
         items.push(Item::Text {
             at: [left + SAMPLE + 8.0, y - 7.0],
             anchor: Anchor::Start,

@@ -15,12 +15,12 @@ use gnomon_claims::chart::Chart;
 use super::Picture;
 
 /// The chart as a picture.
-pub(crate) fn picture(chart: &Chart) -> Picture {
+pub fn picture(chart: &Chart) -> Picture {
     raster::draw(&layout::Layout::new(chart))
 }
 
 /// The chart as an SVG document.
-pub(crate) fn svg(chart: &Chart) -> String {
+pub fn svg(chart: &Chart) -> String {
     svg::write(&layout::Layout::new(chart))
 }
 

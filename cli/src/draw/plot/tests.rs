@@ -50,6 +50,42 @@ fn points_that_cannot_be_shown_are_counted() {
     assert_eq!(svg.matches("<circle").count(), 2 + 1 + 2); // points and legend
 }
 
+/// Neither is a gap closed by a line through it.
+#[test]
+fn lines_are_interrupted_where_a_point_cannot_be_shown() {
+    let mut chart = chart();
+    let ys = [1.0, 2.0, f64::NAN, 3.0, 4.0, 0.0, 5.0];
+    let points = ys.iter().enumerate().map(|(k, y)| [(k + 1) as f64, *y]);
+    chart.series = vec![Series::line("gaps", points.collect())];
+    let svg = svg(&chart);
+    let lines: Vec<&str> = svg
+        .lines()
+        .filter(|l| l.contains("stroke-width=\"2.5\""))
+        .collect();
+    // Two pairs and the sample of the legend; the last point is a dot alone.
+    assert_eq!(lines.len(), 3, "{svg}");
+    assert!(
+        lines.iter().all(|l| l.matches(',').count() == 2),
+        "{lines:?}"
+    );
+    assert_eq!(svg.matches("<circle").count(), 5 + 1);
+    assert!(svg.contains("gaps (2 not shown)"));
+}
+
+/// More series than colours are still told apart.
+#[test]
+fn colours_come_again_with_dashes() {
+    let mut chart = chart();
+    let line = |k: usize| Series::line(&format!("line {k}"), vec![[2.0, 10.0], [8.0, 1000.0]]);
+    chart.series = (0..14).map(line).collect();
+    let svg = svg(&chart);
+    let lines = svg.lines().filter(|l| l.contains("stroke-width=\"2.5\""));
+    let mut looks: Vec<&str> = lines.map(|l| &l[l.find("stroke=").unwrap()..]).collect();
+    looks.sort_unstable();
+    looks.dedup();
+    assert_eq!(looks.len(), 14, "{looks:?}");
+}
+
 #[test]
 fn text_is_escaped() {
     let svg = svg(&chart());

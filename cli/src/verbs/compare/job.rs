@@ -9,7 +9,7 @@ use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
-use crate::args::{CompareArgs, EntryArg};
+use super::args::{CompareArgs, EntryArg};
 use crate::error::CliError;
 use crate::output::files;
 use crate::verbs;

@@ -117,7 +117,8 @@ mod tests {
     /// Its pictures have all lights, the truth has one.
     #[test]
     fn the_demo_has_one_light() {
-        let scene = gnomon_pipeline::world::scene::builtin::build(super::super::SCENE).unwrap();
+        let scene =
+            gnomon_pipeline::world::scene::builtin::build(super::super::run::SCENE).unwrap();
         assert_eq!(scene.lights.len(), 1);
     }
 }

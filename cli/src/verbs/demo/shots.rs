@@ -5,7 +5,7 @@ use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::world::scene::Scene;
 
-use crate::args::DemoArgs;
+use super::args::DemoArgs;
 use crate::error::CliError;
 use crate::output::json::RenderJob;
 use crate::output::progress::Progress;

@@ -10,8 +10,9 @@ use gnomon_pipeline::measure::render::{Rendered, render};
 use gnomon_pipeline::techniques::find;
 use serde::Serialize;
 
-use super::{Job, default_out, source, write};
-use crate::args::RenderArgs;
+use super::args::RenderArgs;
+use super::job::{Job, default_out, source};
+use super::write::write;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::check_folder;

@@ -3,7 +3,8 @@
 use gnomon_claims::{Finding, LabSettings, Measure, Unit};
 use serde::Serialize;
 
-use super::{Outcome, text};
+use super::run::Outcome;
+use super::text;
 use crate::output::json::{FileDocument, worker_threads};
 
 #[derive(Serialize)]

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use gnomon_claims::{Finding, Judgement, LabSettings, Measure, Theirs, Unit, Verdict};
 
-use super::Outcome;
+use super::run::Outcome;
 use crate::output::json::worker_threads;
 use crate::output::numbers;
 use crate::output::wrap::hanging;

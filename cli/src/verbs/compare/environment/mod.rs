@@ -14,8 +14,8 @@ use gnomon_pipeline::world::environment::cube::luminance;
 use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
+use super::args::CompareArgs;
 use super::job::{self, DEFAULT_SIZE, Entry};
-use crate::args::CompareArgs;
 use crate::error::CliError;
 use crate::output::files::{self, Batch};
 use crate::output::json::{FileDocument, worker_threads};

@@ -6,15 +6,18 @@
 //! are computed, helpers too, for derivatives of what a look-up gives; only
 //! fragments are counted.
 
+use super::BoundTexture;
 use super::address::Axis;
 use super::cube::{self, Face};
-use super::fetch::{self, Aspect, NO_WORDS, Texels, Words, decode, gather};
+use super::fetch::{self, Aspect, NO_WORDS, Texels, gather};
 use super::lod::{self, Detail, Levels};
-use super::{Texture, TextureDimension};
-use crate::command::{AddressMode, BoundTexture, Sampler};
+use crate::format::lanes::{Words, decode};
+
 use crate::math;
 use crate::shader::Fragment;
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32, outlined};
+use crate::state::{AddressMode, Sampler};
+use crate::texture::{Texture, TextureDimension};
 use crate::tile::COUNT;
 
 /// Where a texture is looked up.

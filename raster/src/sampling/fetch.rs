@@ -1,9 +1,8 @@
 //! Reading texels: gathers, one lane at a time, and decoding, over lanes.
 
-use super::plane::{Block, Block4, ColorBlocks, Plane};
-use super::{BLOCK, Texture};
-use crate::format::{D24_MAX, Format};
-use crate::simd::{F32, I32, LANES, Lanes, U32, each4};
+use crate::format::lanes::Words;
+use crate::simd::{I32, LANES, Lanes};
+use crate::texture::{BLOCK, Block, Block4, ColorBlocks, Plane, Texture};
 
 /// Which texel each lane reads.
 pub(super) struct Texels<'a> {
@@ -12,7 +11,7 @@ pub(super) struct Texels<'a> {
     pub(super) layer: &'a [i32; LANES],
     /// Index of the texel in its layer's storage ([`Layout::locate_lanes`]).
     ///
-    /// [`Layout::locate_lanes`]: super::Layout::locate_lanes
+    /// [`Layout::locate_lanes`]: crate::texture::Layout::locate_lanes
     pub(super) at: &'a [u32; LANES],
     /// Lanes that read; the indices of the others may be anything.
     pub(super) lanes: u16,
@@ -26,9 +25,6 @@ pub(super) enum Aspect {
     /// Stencil.
     Stencil,
 }
-
-/// Words by lane: packed formats in the first, others a channel a word.
-pub(super) type Words = [[u32; LANES]; 4];
 
 /// Where [`gather`] puts them: 256 bytes, filled in place.
 pub(super) const NO_WORDS: Words = [[0; LANES]; 4];
@@ -165,70 +161,6 @@ fn lanes_of(mut mask: u16) -> impl Iterator<Item = usize> {
     })
 }
 
-/// What [`super::resource::decode`] does, over lanes; depth too.
-#[inline(always)]
-pub(super) fn decode<L: Lanes>(l: L, format: Format, words: &Words) -> [F32<L>; 4] {
-    let first = U32::from_array(l, &words[0]);
-    let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
-    match format {
-        Format::R8Unorm => [unorm8(first, 0), zero, zero, one],
-        Format::Rg8Unorm => [unorm8(first, 0), unorm8(first, 8), zero, one],
-        Format::Rgba8Unorm => [
-            unorm8(first, 0),
-            unorm8(first, 8),
-            unorm8(first, 16),
-            unorm8(first, 24),
-        ],
-        Format::R16Sint => [((first.to_i32() << 16) >> 16).to_f32(), zero, zero, one],
-        Format::R16Float => [half(first), zero, zero, one],
-        Format::Rgba16Float => each4(
-            #[inline(always)]
-            |i| half(U32::from_array(l, &words[i])),
-        ),
-        Format::R32Float | Format::Depth32FloatStencil8 => [first.to_f32_bits(), zero, zero, one],
-        Format::Rgba32Float => each4(
-            #[inline(always)]
-            |i| U32::from_array(l, &words[i]).to_f32_bits(),
-        ),
-        Format::R32Uint => [unsigned(first), zero, zero, one],
-        Format::Depth24Stencil8 => [first.to_i32().to_f32() / D24_MAX as f32, zero, zero, one],
-    }
-}
-
-/// 1/255 in 16 bits, and the rest: both products of a byte with them and their
-/// sum together round as the quotient does (tested for all bytes).
-const INVERSE_255: [f32; 2] = [0.003_921_628, -5.937_09e-8];
-
-#[inline(always)]
-fn unorm8<L: Lanes>(word: U32<L>, shift: u32) -> F32<L> {
-    let byte = ((word >> shift) & U32::splat(word.l, 255))
-        .to_i32()
-        .to_f32();
-    byte * INVERSE_255[0] + byte * INVERSE_255[1]
-}
-
-/// An unsigned integer to the nearest float, ties to even.
-#[inline(always)]
-fn unsigned<L: Lanes>(v: U32<L>) -> F32<L> {
-    let high = (v >> 16).to_i32().to_f32();
-    let low = (v & U32::splat(v.l, 0xffff)).to_i32().to_f32();
-    high * 65536.0 + low
-}
-
-/// A half to float, exactly; every NaN becomes 0x7fc0_0000.
-#[inline(always)]
-fn half<L: Lanes>(h: U32<L>) -> F32<L> {
-    let l = h.l;
-    let magnitude = (h & U32::splat(l, 0x7fff)) << 13;
-    let special = magnitude.ge(U32::splat(l, 0x7c00 << 13));
-    let finite = magnitude.to_f32_bits() * f32::from_bits((127 + 112) << 23);
-    let infinite = (magnitude | U32::splat(l, 0x7f80_0000)).to_f32_bits();
-    let sign = (h & U32::splat(l, 0x8000)) << 16;
-    (special.select_f32(infinite, finite).to_bits() | sign)
-        .to_f32_bits()
-        .canonical_nan()
-}
-
 /// Lane indices, each limited to an axis of `size`, and which were inside.
 #[inline(always)]
 pub(super) fn inside<L: Lanes>(i: I32<L>, size: u32) -> u16 {
@@ -238,42 +170,16 @@ pub(super) fn inside<L: Lanes>(i: I32<L>, size: u32) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::resource;
     use super::*;
-    use crate::format;
-    use crate::simd::{SimdLevel, with_lanes};
-
-    /// Words that try each byte, half and a spread of 32-bit patterns.
-    fn patterns(format: Format) -> Vec<u32> {
-        match format.bytes() {
-            1 => (0..=255).collect(),
-            2 | 8 => (0..=0xffff).collect(),
-            3 => (0..=D24_MAX).step_by(97).collect(),
-            _ => (0..=0xffff_ffffu32)
-                .step_by(65_521)
-                .chain([u32::MAX, 0x7f80_0001, 0xffc0_0000])
-                .collect(),
-        }
-    }
-
-    fn scalar(format: Format, word: u32) -> [f32; 4] {
-        let channels = match format {
-            Format::Rg8Unorm => [word & 255, word >> 8, 0, 0],
-            Format::Rgba8Unorm => word.to_le_bytes().map(u32::from),
-            Format::Rgba16Float | Format::Rgba32Float => [word; 4],
-            Format::Depth24Stencil8 => return [format::f32_from_d24(word), 0.0, 0.0, 1.0],
-            Format::Depth32FloatStencil8 => return [f32::from_bits(word), 0.0, 0.0, 1.0],
-            _ => [word, 0, 0, 0],
-        };
-        resource::decode(format, channels).0
-    }
+    use crate::format::Format;
+    use crate::texture::TextureDescriptor;
 
     /// Packets that read their own pixels take whole runs; the same words as lane
     /// by lane, wherever the packet is and whichever lanes read.
     #[test]
     fn runs_are_read_like_single_texels() {
         for format in [Format::R32Float, Format::Rgba8Unorm, Format::Rgba32Float] {
-            let desc = super::super::TextureDescriptor::d2("numbered", format, 40, 24);
+            let desc = TextureDescriptor::d2("numbered", format, 40, 24);
             let mut texture = Texture::new(&desc).unwrap();
             let texel = |k: u32| [0.0, 0.25, 0.5, 0.75].map(|c| (c + k as f32) / 1024.0);
             let texels: Vec<_> = (0..40 * 24).map(texel).collect();
@@ -305,28 +211,6 @@ mod tests {
                         for (got, one) in got.iter().zip(&one) {
                             assert_eq!(got[lane], one[lane], "{format:?} {x0} {y0} {lane}");
                         }
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn lanes_decode_like_scalars() {
-        for format in Format::ALL {
-            for chunk in patterns(format).chunks(LANES) {
-                let word: [u32; LANES] = core::array::from_fn(|i| chunk[i % chunk.len()]);
-                for level in SimdLevel::available() {
-                    let got =
-                        with_lanes!(level, l => decode(l, format, &[word; 4]).map(F32::to_array));
-                    for i in 0..LANES {
-                        let want = scalar(format, word[i]).map(f32::to_bits);
-                        assert_eq!(
-                            got.map(|c| c[i].to_bits()),
-                            want,
-                            "{format:?} {:#x} {level}",
-                            word[i]
-                        );
                     }
                 }
             }

@@ -1,36 +1,35 @@
 //! Where techniques break down: their error against the exact oracle on one scene
 //! in ever larger and smaller units, and ever further from the origin.
 //!
-//! `cargo run --release -p gnomon-pipeline --example breakdown -- FOLDER [SCENE]`
+//! `cargo run --release -p gnomon --example breakdown -- FOLDER [SCENE]`
 //!
-//! writes `breakdown.csv` and `breakdown.svg` into FOLDER; SCENE is
+//! writes `breakdown.csv`, `breakdown-scale.svg` and `breakdown-offset.svg` into FOLDER; SCENE is
 //! `parallel-plates` unless given, where geometry is no source of error. Truth is that
 //! of the same positions, rounded to f32 where they come to lie, so what is measured is
 //! the technique and not the model.
 
 #![allow(clippy::print_stdout, reason = "a measurement prints")]
 
-mod plot;
-
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use glam::DVec3;
+use gnomon::draw::plot;
+use gnomon_claims::chart::{Axis, Chart, Series};
 use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
 use gnomon_pipeline::measure::render::{RenderSettings, render};
 use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::world::scene::{Scene, builtin};
-use plot::{Axis, Plot, Series};
 
 const SIZE: [u32; 2] = [240, 160];
 
 /// Which way the scene goes.
 const AWAY: DVec3 = DVec3::new(1.0, 0.5, -0.75);
 
-/// The least RMSE that the plot shows.
+/// What smaller errors are shown as.
 const FLOOR: f64 = 1e-8;
 
 /// Exponents of ten of what is varied, in quarters.
@@ -50,7 +49,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let write = |name: &str, text: String| std::fs::write(Path::new(&folder).join(name), text);
     write("breakdown.csv", csv(&curves))?;
-    write("breakdown.svg", plot::svg(&curves.each_ref().map(plot_of)))?;
+    for chart in curves.iter().map(chart) {
+        write(&format!("{}.svg", chart.name), plot::svg(&chart))?;
+    }
     Ok(())
 }
 
@@ -135,15 +136,18 @@ fn csv(curves: &[Curve]) -> String {
     text
 }
 
-fn plot_of(curve: &Curve) -> Plot {
-    let series = |k: usize| Series {
-        name: techniques::all()[k].name().to_owned(),
-        points: curve.points.iter().map(|p| (p.0, p.2[k])).collect(),
+/// A line for each technique, interrupted where it gives no picture.
+fn chart(curve: &Curve) -> Chart {
+    let series = |k: usize| {
+        let error = |e: Option<f64>| e.map_or(f64::NAN, |e| e.max(FLOOR));
+        let points = curve.points.iter().map(|p| [p.0, error(p.2[k])]);
+        Series::line(techniques::all()[k].name(), points.collect())
     };
-    Plot {
+    Chart {
+        name: format!("breakdown-{}", curve.variable),
         title: format!("RMSE of visibility over {}", curve.variable),
-        axis: Axis::Decades,
-        floor: FLOOR,
+        x: Axis::log10(curve.variable),
+        y: Axis::log10("RMSE, 1e-8 where it is less"),
         series: (0..techniques::all().len()).map(series).collect(),
     }
 }

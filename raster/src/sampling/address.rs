@@ -1,8 +1,8 @@
 //! From a normalised coordinate to texel indices and a weight
 //! (`docs/texture-rules.md`, §2).
 
-use crate::command::AddressMode;
 use crate::simd::{F32, I32, Lanes, Mask};
+use crate::state::AddressMode;
 
 /// The texels that a coordinate selects along one axis.
 #[derive(Clone, Copy)]

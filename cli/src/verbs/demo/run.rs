@@ -1,9 +1,4 @@
-//! `gnomon demo`: the default scene, what each technique costs, and a proof
-//! that skipping and the choice of method change no bit.
-
-mod checks;
-mod errors;
-mod shots;
+//! From the command line to pictures, tables and the report.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -12,11 +7,10 @@ use gnomon_pipeline::measure::heat;
 use gnomon_pipeline::world::scene::{Scene, builtin};
 use serde::Serialize;
 
-use checks::Checks;
-use errors::{ErrorDocument, Errors};
-use shots::{ENTRIES, REPEAT, Shot, same_bits, settings, shoot};
-
-use crate::args::{DemoArgs, OverlayKind};
+use super::args::DemoArgs;
+use super::checks::Checks;
+use super::errors::{ErrorDocument, Errors};
+use super::shots::{ENTRIES, REPEAT, Shot, same_bits, settings, shoot};
 use crate::error::CliError;
 use crate::output::files::{self, Batch};
 use crate::output::html::{Figure, Report};
@@ -25,9 +19,9 @@ use crate::output::progress::Progress;
 use crate::output::tables::{self, Named, Table};
 use crate::output::wrap::hanging;
 use crate::output::{self, numbers, png};
-use crate::overlay;
+use crate::overlay::{self, OverlayKind};
 
-const SCENE: &str = "demo";
+pub(super) const SCENE: &str = "demo";
 /// The entry that overlays are drawn over.
 const EXPLAINED: usize = 3;
 

@@ -1,8 +1,8 @@
 //! Level of detail (`docs/texture-rules.md`, §3).
 
-use crate::command::{FilterMode, Sampler};
 use crate::math;
 use crate::simd::{F32, I32, Lanes, Mask};
+use crate::state::{FilterMode, Sampler};
 
 /// What the level of detail comes from.
 #[derive(Clone, Copy)]

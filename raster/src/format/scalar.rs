@@ -1,93 +1,8 @@
-//! Attachment and texture formats, and their exact scalar conversions.
+//! Conversions of one value.
 
 use half::f16;
 
-/// Format of a colour attachment or texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Format {
-    /// One 8-bit unorm channel.
-    R8Unorm,
-    /// Two 8-bit unorm channels.
-    Rg8Unorm,
-    /// Four 8-bit unorm channels.
-    Rgba8Unorm,
-    /// One signed 16-bit integer channel (a light-intensity buffer, paper I §5).
-    R16Sint,
-    /// One half-float channel.
-    R16Float,
-    /// Four half-float channels.
-    Rgba16Float,
-    /// One float channel.
-    R32Float,
-    /// Four float channels.
-    Rgba32Float,
-    /// One unsigned 32-bit integer channel (a summed-area table).
-    R32Uint,
-    /// 24-bit integer depth and 8-bit stencil.
-    Depth24Stencil8,
-    /// Float depth and 8-bit stencil.
-    Depth32FloatStencil8,
-}
-
-impl Format {
-    /// All of them.
-    pub const ALL: [Self; 11] = [
-        Self::R8Unorm,
-        Self::Rg8Unorm,
-        Self::Rgba8Unorm,
-        Self::R16Sint,
-        Self::R16Float,
-        Self::Rgba16Float,
-        Self::R32Float,
-        Self::Rgba32Float,
-        Self::R32Uint,
-        Self::Depth24Stencil8,
-        Self::Depth32FloatStencil8,
-    ];
-
-    /// Whether the format holds depth and stencil.
-    #[must_use]
-    pub fn is_depth_stencil(self) -> bool {
-        matches!(self, Self::Depth24Stencil8 | Self::Depth32FloatStencil8)
-    }
-
-    /// Channels of a colour format (1 for the depth aspect).
-    #[must_use]
-    pub fn channels(self) -> usize {
-        match self {
-            Self::Rg8Unorm => 2,
-            Self::Rgba8Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
-            _ => 1,
-        }
-    }
-
-    /// Bytes of a colour texel; of the depth aspect for depth formats (D24 = 3).
-    #[must_use]
-    pub fn bytes(self) -> u64 {
-        match self {
-            Self::R8Unorm => 1,
-            Self::Rg8Unorm | Self::R16Sint | Self::R16Float => 2,
-            Self::Depth24Stencil8 => 3,
-            Self::Rgba8Unorm | Self::R32Float | Self::R32Uint | Self::Depth32FloatStencil8 => 4,
-            Self::Rgba16Float => 8,
-            Self::Rgba32Float => 16,
-        }
-    }
-
-    /// Whether values are integers that are not normalised.
-    #[must_use]
-    pub fn is_integer(self) -> bool {
-        matches!(self, Self::R16Sint | Self::R32Uint)
-    }
-
-    /// Whether the format can be blended. 32-bit integers cannot; R16Sint can
-    /// with factors `One` and `Zero`, as the papers' light-intensity buffer
-    /// needs: integer arithmetic saturating to −32768..=32767.
-    #[must_use]
-    pub fn is_blendable(self) -> bool {
-        !self.is_depth_stencil() && self != Self::R32Uint
-    }
-}
+use super::Format;
 
 /// Largest stored value of D24.
 pub const D24_MAX: u32 = 0x00ff_ffff;
@@ -158,6 +73,54 @@ pub fn d24_from_f32(v: f32) -> u32 {
 #[must_use]
 pub fn f32_from_d24(v: u32) -> f32 {
     v as f32 / D24_MAX as f32
+}
+
+/// Depth in 0..=1 as a stored integer; NaN and −0 become 0.
+pub(crate) fn encode_depth(f: Format, v: f32) -> u32 {
+    if f == Format::Depth24Stencil8 {
+        return d24_from_f32(v);
+    }
+    let c = if v > 0.0 { v } else { 0.0 };
+    (if c < 1.0 { c } else { 1.0 }).to_bits()
+}
+
+/// A shader's output as raw channels.
+pub(crate) fn encode(f: Format, v: [f32; 4]) -> [u32; 4] {
+    match f {
+        Format::R8Unorm => [u32::from(unorm8_from_f32(v[0])), 0, 0, 0],
+        Format::Rg8Unorm => [
+            u32::from(unorm8_from_f32(v[0])),
+            u32::from(unorm8_from_f32(v[1])),
+            0,
+            0,
+        ],
+        Format::Rgba8Unorm => v.map(|c| u32::from(unorm8_from_f32(c))),
+        Format::R16Sint => [u32::from(i16_from_f32(v[0]) as u16), 0, 0, 0],
+        Format::R16Float => [u32::from(f16_from_f32(v[0])), 0, 0, 0],
+        Format::Rgba16Float => v.map(|c| u32::from(f16_from_f32(c))),
+        Format::R32Float => [canonical_nan(v[0]).to_bits(), 0, 0, 0],
+        Format::Rgba32Float => v.map(|c| canonical_nan(c).to_bits()),
+        Format::R32Uint => [v[0].to_bits(), 0, 0, 0],
+        Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => [0; 4],
+    }
+}
+
+/// Raw channels as floats; missing colour channels are 0, missing alpha 1.
+pub(crate) fn decode(f: Format, t: [u32; 4]) -> [f32; 4] {
+    let u = |c: u32| f32_from_unorm8(c as u8);
+    let h = |c: u32| f32_from_f16(c as u16);
+    match f {
+        Format::R8Unorm => [u(t[0]), 0.0, 0.0, 1.0],
+        Format::Rg8Unorm => [u(t[0]), u(t[1]), 0.0, 1.0],
+        Format::Rgba8Unorm => t.map(u),
+        Format::R16Sint => [f32::from(t[0] as u16 as i16), 0.0, 0.0, 1.0],
+        Format::R16Float => [h(t[0]), 0.0, 0.0, 1.0],
+        Format::Rgba16Float => t.map(h),
+        Format::R32Float => [f32::from_bits(t[0]), 0.0, 0.0, 1.0],
+        Format::Rgba32Float => t.map(f32::from_bits),
+        Format::R32Uint => [t[0] as f32, 0.0, 0.0, 1.0],
+        Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => [0.0; 4],
+    }
 }
 
 #[cfg(test)]

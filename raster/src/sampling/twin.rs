@@ -1,14 +1,15 @@
 //! `docs/texture-rules.md` a second time, one lookup at a time and slowly, and
 //! the tests that hold the lanes against it.
 
+use super::BoundTexture;
 use super::fetch::{Aspect, NO_WORDS};
 use super::lod::Detail;
 use super::sample::{decode_fetched, fetch_words, look_up};
-use super::{Subresource, Texture, TextureDescriptor, TextureDimension};
-use crate::command::{AddressMode, BoundTexture, FilterMode, Sampler};
 use crate::format::{self, Format};
 use crate::math::scalar;
 use crate::simd::{F32, I32, LANES, SimdLevel, with_lanes};
+use crate::state::{AddressMode, FilterMode, Sampler};
+use crate::texture::{Subresource, Texture, TextureDescriptor, TextureDimension};
 
 /// `if a > b { a } else { b }`; the facade's NaN rule, written out.
 fn larger(a: f32, b: f32) -> f32 {

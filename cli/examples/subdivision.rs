@@ -1,14 +1,12 @@
 //! How far each way of finding and storing coverage drifts when silhouette edges are
 //! cut into ever more collinear pieces, which changes nothing in truth.
 //!
-//! `cargo run --release -p gnomon-pipeline --example subdivision -- FOLDER`
+//! `cargo run --release -p gnomon --example subdivision -- FOLDER`
 //!
-//! writes `subdivision.csv` and `subdivision.svg` into FOLDER: RMS and largest change
+//! writes `subdivision.csv` and plots of it into FOLDER: RMS and largest change
 //! of visibility on the parallel plates from whole edges to m pieces each.
 
 #![allow(clippy::print_stdout, reason = "a measurement prints")]
-
-mod plot;
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -16,6 +14,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec3;
+use gnomon::draw::plot;
+use gnomon_claims::chart::{Axis, Chart, Series};
 use gnomon_pipeline::measure::render::{RenderSettings, render};
 use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::find;
@@ -23,11 +23,10 @@ use gnomon_pipeline::world::light::LightShape;
 use gnomon_pipeline::world::mesh::Shading;
 use gnomon_pipeline::world::scene::{Scene, builtin};
 use gnomon_pipeline::world::shape::bevelled_plate_in_pieces;
-use plot::{Axis, Plot, Series};
 
 const SIZE: [u32; 2] = [240, 160];
 const PIECES: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// The least change that the plot shows.
+/// What smaller changes are shown as.
 const FLOOR: f64 = 1e-8;
 
 /// A back end: what it is called, technique, settings, and whether under a disc.
@@ -75,10 +74,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let write = |name: &str, text: String| std::fs::write(Path::new(&folder).join(name), text);
     write("subdivision.csv", csv(&curves))?;
-    write(
-        "subdivision.svg",
-        plot::svg(&[plot_of(&curves, 1, "largest"), plot_of(&curves, 0, "RMS")]),
-    )?;
+    for chart in [chart(&curves, 1, "largest"), chart(&curves, 0, "RMS")] {
+        write(&format!("{}.svg", chart.name), plot::svg(&chart))?;
+    }
     Ok(())
 }
 
@@ -133,19 +131,19 @@ fn csv(curves: &[(&str, Vec<[f64; 2]>)]) -> String {
     text
 }
 
-fn plot_of(curves: &[(&str, Vec<[f64; 2]>)], figure: usize, what: &str) -> Plot {
+fn chart(curves: &[(&str, Vec<[f64; 2]>)], figure: usize, what: &str) -> Chart {
     let series = |(name, drifts): &(&str, Vec<[f64; 2]>)| {
         let pieces = PIECES[1..].iter().map(|m| f64::from(*m));
-        let points = pieces.zip(drifts).map(|(m, d)| (m, Some(d[figure])));
-        Series {
-            name: (*name).to_owned(),
-            points: points.collect(),
-        }
+        let points = pieces
+            .zip(drifts)
+            .map(|(m, drift)| [m, drift[figure].max(FLOOR)]);
+        Series::line(name, points.collect())
     };
-    Plot {
+    Chart {
+        name: format!("subdivision-{}", what.to_lowercase()),
         title: format!("{what} change of visibility over pieces of each edge"),
-        axis: Axis::Doublings,
-        floor: FLOOR,
+        x: Axis::log2("pieces"),
+        y: Axis::log10("change, 1e-8 where it is less"),
         series: curves.iter().map(series).collect(),
     }
 }

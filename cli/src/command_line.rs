@@ -1,0 +1,63 @@
+//! The command line: verbs, each with its own flags.
+
+use clap::{Parser, Subcommand};
+
+use crate::error::CliError;
+use crate::flags::ListArgs;
+use crate::verbs;
+use crate::verbs::compare::CompareArgs;
+use crate::verbs::demo::DemoArgs;
+use crate::verbs::render::RenderArgs;
+use crate::verbs::reproduce::ReproduceArgs;
+
+/// A deterministic software GPU for shadow algorithms that counts memory traffic.
+#[derive(Debug, Parser)]
+#[command(name = "gnomon", version, propagate_version = true)]
+#[command(after_help = "Exit codes: 0 fine, 1 differs or check failed, 2 bad input.")]
+pub(crate) struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Render the default scene with the principal techniques and show what each cost
+    Demo(DemoArgs),
+    /// Render one frame of a scene
+    Render(Box<RenderArgs>),
+    /// Measure techniques against the exact soft shadow
+    Compare(Box<CompareArgs>),
+    /// Measure the papers' quantitative claims again, theirs beside ours
+    Reproduce(Box<ReproduceArgs>),
+    /// List the built-in scenes
+    Scenes(ListArgs),
+    /// List the techniques and their parameters
+    Techniques(ListArgs),
+}
+
+impl Verb {
+    /// Does it.
+    pub(crate) fn run(&self) -> Result<(), CliError> {
+        match self {
+            Self::Compare(args) => verbs::compare::run(args),
+            Self::Demo(args) => verbs::demo::run(args),
+            Self::Render(args) => verbs::render::run(args),
+            Self::Reproduce(args) => verbs::reproduce::run(args),
+            Self::Scenes(args) => verbs::scenes::run(args),
+            Self::Techniques(args) => verbs::techniques::run(args),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,11 @@
+//! Flags that several verbs take, and the values that flags take.
+
+mod environment;
+mod execution;
+mod listing;
+mod values;
+
+pub(crate) use environment::EnvArgs;
+pub(crate) use execution::GpuArgs;
+pub(crate) use listing::ListArgs;
+pub(crate) use values::{parse_setting, parse_size, parse_time};

@@ -1,0 +1,45 @@
+//! The command line: arguments, progress, exit codes; the work is done by the
+//! other packages. [`run`] is the program; [`draw`] is for programs that plot what
+//! they measured.
+
+mod command_line;
+pub mod draw;
+mod error;
+mod flags;
+mod output;
+mod overlay;
+mod verbs;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use command_line::Cli;
+
+/// Runs the program on `arguments`, the first of which is its own name: 0 fine,
+/// 1 differs or a check failed, 2 bad input.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => return told(&error),
+    };
+    match cli.verb.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+/// Prints help or what is wrong with the command line.
+fn told(error: &clap::Error) -> ExitCode {
+    // Nobody is left to tell of a closed terminal.
+    let _ = error.print();
+    if error.use_stderr() {
+        ExitCode::from(2)
+    } else {
+        ExitCode::SUCCESS
+    }
+}

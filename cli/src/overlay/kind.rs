@@ -1,0 +1,37 @@
+//! Which pictures there are, by name.
+
+use clap::ValueEnum;
+
+/// Pictures that explain a render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
+pub(crate) enum OverlayKind {
+    /// Fragments generated per pixel
+    Overdraw,
+    /// Stencil values left at the end
+    Stencil,
+    /// Bytes read and written per 8x8 block
+    Traffic,
+    /// Silhouette edges of the casters, seen from the lights
+    Silhouette,
+    /// Sides of the shadow volumes
+    Volumes,
+    /// Penumbra wedges, as the technique builds them
+    Wedges,
+    /// The map of the environment with the fitted lights outlined
+    EnvLights,
+}
+
+impl OverlayKind {
+    /// Its name on the command line and in file names.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Overdraw => "overdraw",
+            Self::Stencil => "stencil",
+            Self::Traffic => "traffic",
+            Self::Silhouette => "silhouette",
+            Self::Volumes => "volumes",
+            Self::Wedges => "wedges",
+            Self::EnvLights => "env-lights",
+        }
+    }
+}

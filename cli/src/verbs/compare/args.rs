@@ -1,0 +1,141 @@
+//! The command line of `gnomon compare`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use gnomon_pipeline::measure::comparison::{ReferenceKind, UnknownReference};
+
+use crate::flags::{EnvArgs, GpuArgs, parse_setting, parse_size, parse_time};
+
+/// Flags of `compare`.
+#[derive(Debug, Args)]
+#[command(after_help = COMPARE_HELP)]
+pub(crate) struct CompareArgs {
+    /// Built-in scene (see `gnomon scenes`), .toml scene file or .obj model
+    pub(crate) scene: String,
+    /// Techniques (see `gnomon techniques`), each with settings of its own behind
+    /// colons if need be: NAME:KEY=VALUE:...
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', required = true, value_parser = parse_entry)]
+    pub(crate) techniques: Vec<EntryArg>,
+    /// A parameter of all entries of a technique; may be repeated
+    #[arg(long = "set", value_name = "TECHNIQUE.KEY=VALUE", value_parser = parse_technique_setting)]
+    pub(crate) settings: Vec<TechniqueSetting>,
+    /// The light that shines, by its number; the others are off
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) light: usize,
+    /// The truth: exact (areas in f64) or rays (4096 stratified shadow rays a pixel)
+    #[arg(long, value_name = "NAME", default_value = "exact", value_parser = parse_reference)]
+    pub(crate) reference: ReferenceKind,
+    /// Image size in pixels [default: the scene file's, or else 640x480]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Folder for the picture, SCENE-compare.png, and for the truth, oracle-cache/
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out_dir: PathBuf,
+    /// Frames to time; the median is reported
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) repeat: u32,
+    /// The time of animated scenes, in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_time, allow_negative_numbers = true)]
+    pub(crate) time: f64,
+    /// How to execute.
+    #[command(flatten)]
+    pub(crate) gpu: GpuArgs,
+    /// Print one JSON document on stdout, the table on stderr
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// A map that lights the scene: all lights shine, and light is compared with
+    /// that of sampled directions.
+    #[command(flatten)]
+    pub(crate) environment: EnvArgs,
+    /// Numbers of area lights to compare [default: 30,45,60]
+    #[arg(
+        long,
+        value_name = "N,...",
+        value_delimiter = ',',
+        requires = "env",
+        conflicts_with = "light"
+    )]
+    pub(crate) lights: Vec<usize>,
+    /// Directions of the reference
+    #[arg(long, value_name = "N", default_value_t = 1024, requires = "env", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) directions: u32,
+}
+
+const COMPARE_HELP: &str = "\
+Example: gnomon compare cylinder \
+--techniques shadow-volumes,sampled-shadow-volumes:samples=16,sampled-shadow-volumes:samples=256
+With --env: gnomon compare creature --env sky --lights 30,60 --techniques soft-shadow-volumes
+
+Exit codes: 0 fine, 2 bad input.";
+
+/// A technique to compare, with the settings that it was given.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct EntryArg {
+    /// The technique's name, unchecked.
+    pub(crate) technique: String,
+    /// Keys and values, unchecked.
+    pub(crate) settings: Vec<(String, String)>,
+}
+
+/// A setting of all entries of a technique.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct TechniqueSetting {
+    /// The technique's name, unchecked.
+    pub(crate) technique: String,
+    /// Key and value, unchecked.
+    pub(crate) setting: (String, String),
+}
+
+fn parse_entry(text: &str) -> Result<EntryArg, String> {
+    let mut parts = text.split(':');
+    let technique = parts.next().unwrap_or_default().trim();
+    if technique.is_empty() {
+        return Err("expected NAME or NAME:KEY=VALUE:..., separated by commas".to_owned());
+    }
+    Ok(EntryArg {
+        technique: technique.to_owned(),
+        settings: parts.map(parse_setting).collect::<Result<_, _>>()?,
+    })
+}
+
+fn parse_technique_setting(text: &str) -> Result<TechniqueSetting, String> {
+    let valid = "expected TECHNIQUE.KEY=VALUE, such as shadow-volumes.method=zfail";
+    let (name, value) = text.split_once('=').ok_or(valid)?;
+    match name.split_once('.') {
+        Some((technique, key)) if !technique.is_empty() && !key.is_empty() => {
+            Ok(TechniqueSetting {
+                technique: technique.to_owned(),
+                setting: (key.to_owned(), value.to_owned()),
+            })
+        }
+        _ => Err(valid.to_owned()),
+    }
+}
+
+fn parse_reference(text: &str) -> Result<ReferenceKind, String> {
+    text.parse().map_err(|e: UnknownReference| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_have_settings_of_their_own() {
+        let entry = parse_entry("a:k=1:l=x=y").unwrap();
+        let pair = |k: &str, v: &str| (k.to_owned(), v.to_owned());
+        assert_eq!(entry.technique, "a");
+        assert_eq!(entry.settings, [pair("k", "1"), pair("l", "x=y")]);
+        assert!(parse_entry("").is_err() && parse_entry("a:b").is_err());
+        let all = parse_technique_setting("a-b.k=1.5").unwrap();
+        assert_eq!(
+            (all.technique, all.setting),
+            ("a-b".to_owned(), pair("k", "1.5"))
+        );
+        for bad in ["k=1", "a.k", ".k=1", "a.=1"] {
+            let message = parse_technique_setting(bad).unwrap_err();
+            assert!(message.contains("TECHNIQUE.KEY=VALUE"), "{message}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! From the command line to the comparison.
+
+use super::args::CompareArgs;
+use super::document::CompareDocument;
+use super::job::Job;
+use super::measure::{self, Comparison, Measured};
+use super::{environment, picture, table};
+use crate::error::CliError;
+use crate::output::files::Batch;
+use crate::output::json::{FileDocument, worker_threads};
+use crate::output::progress::Progress;
+use crate::output::{self, numbers, png};
+
+/// Renders, measures, draws and prints.
+pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
+    if args.environment.env.is_some() {
+        return environment::run(args);
+    }
+    let job = Job::new(args)?;
+    let progress = Progress::new(job.steps());
+    let found = measure::run(&job, &progress)?;
+    progress.doing("writing the picture");
+    let mut batch = Batch::default();
+    batch.stage(&job.out, &png::encode(&picture::draw(&job, &found)))?;
+    batch.commit()?;
+    drop(progress);
+    let files = [FileDocument {
+        kind: "comparison",
+        path: job.out.display().to_string(),
+    }];
+    if args.json {
+        output::print_json(&CompareDocument::new(&job, &found, &files))?;
+    }
+    output::print_summary(&summary(&job, &found, &files), args.json)
+}
+
+fn summary(job: &Job, found: &Comparison, files: &[FileDocument]) -> String {
+    let settings = &job.settings;
+    let mut text = format!(
+        "{}, light {}, {}x{}: {} threads, {}, skipping {}\n{}\n",
+        job.scene.name,
+        job.light,
+        settings.size[0],
+        settings.size[1],
+        worker_threads(settings.gpu.threads),
+        settings.gpu.simd,
+        if settings.gpu.skip { "on" } else { "off" },
+        truth(found),
+    );
+    for table in table::tables_of(&found.measured) {
+        text += &format!("\n{}", table.to_text());
+    }
+    for line in warnings(job, found) {
+        text += &format!("warning: {line}\n");
+    }
+    for file in files {
+        text += &format!("wrote {} ({})\n", file.path, file.kind);
+    }
+    text
+}
+
+/// One line about the reference.
+fn truth(found: &Comparison) -> String {
+    let reference = &found.reference;
+    let what = match (reference.is_soft, reference.kind.name()) {
+        (true, "rays") => "4096 stratified shadow rays a pixel".to_owned(),
+        (true, kind) => format!("the {kind} soft shadow"),
+        (false, kind) => format!("the hard shadow ({kind}): the light has no area"),
+    };
+    let how = match found.reference_ms {
+        Some(ms) => format!("computed in {}", numbers::milliseconds(ms)),
+        None => "read from the cache".to_owned(),
+    };
+    format!("truth: {what}, {how}")
+}
+
+/// Warnings of the cache and of every technique, each once.
+fn warnings(job: &Job, found: &Comparison) -> Vec<String> {
+    let cache = found.reference.warnings.iter().map(|w| w.to_string());
+    let mut lines: Vec<String> = cache.collect();
+    for (entry, Measured { done, .. }) in job.entries.iter().zip(&found.measured) {
+        let of = |w: &gnomon_pipeline::technique::Warning| {
+            format!("{}: {}: {}", entry.label, w.code, w.message)
+        };
+        lines.extend(done.warnings.iter().map(of));
+    }
+    lines
+}

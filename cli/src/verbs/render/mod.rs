@@ -1,0 +1,10 @@
+//! `gnomon render`: one frame of a scene, or an animation.
+
+mod args;
+mod frames;
+mod job;
+mod run;
+mod write;
+
+pub(crate) use args::RenderArgs;
+pub(crate) use run::run;

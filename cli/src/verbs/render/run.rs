@@ -1,0 +1,79 @@
+//! From the command line to pictures and the summary.
+
+use gnomon_pipeline::measure::render::{Rendered, render};
+use gnomon_pipeline::measure::wedge_work::WedgeWork;
+
+use super::args::RenderArgs;
+use super::frames;
+use super::job::Job;
+use super::write::write;
+use crate::error::CliError;
+use crate::output::json::{FileDocument, worker_threads};
+use crate::output::progress::Progress;
+use crate::output::tables::{self, Named};
+use crate::output::{self, numbers, warnings};
+
+/// Renders one frame, or an animation, and writes what was asked for.
+pub(crate) fn run(args: &RenderArgs) -> Result<(), CliError> {
+    if let Some(count) = args.frames {
+        return frames::run(args, count);
+    }
+    let progress = Progress::new(3 + args.overlay.len() as u64);
+    progress.doing("loading the scene");
+    let job = Job::new(args)?;
+    progress.step();
+    progress.doing("rendering");
+    let done = render(&job.scene, job.technique, &job.params, &job.settings)?;
+    progress.step();
+    let files = write(&job, args, &done, &progress)?;
+    drop(progress);
+    if args.json {
+        output::print_json(&job.document(&done, files.clone()))?;
+    }
+    output::print_summary(&summary(&job, &done, &files), args.json)
+}
+
+fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
+    let settings = &job.settings;
+    let mut text = format!(
+        "{}, {}, {}x{}: {} on {} threads, {}, skipping {}\n\n",
+        job.scene.name,
+        job.technique.name(),
+        done.size[0],
+        done.size[1],
+        numbers::milliseconds(done.frame_ms),
+        worker_threads(settings.gpu.threads),
+        settings.gpu.simd,
+        if settings.gpu.skip { "on" } else { "off" },
+    );
+    let frame = [Named {
+        label: job.technique.name(),
+        done,
+    }];
+    text += &tables::work(&frame).to_text();
+    text.push('\n');
+    text += &tables::traffic(&frame).to_text();
+    if let Some(work) = WedgeWork::of(&done.report, &done.roles) {
+        text += &format!(
+            "\nwedges shaded {} fragments for {} pairs of a pixel and a penumbra that it is in: {:.2} times\n",
+            numbers::count(work.shaded),
+            numbers::count(work.covering),
+            work.ratio(),
+        );
+    }
+    text += &format!(
+        "\ncolor      {}\nvisibility {}\n",
+        done.color_hash(),
+        done.visibility_hash()
+    );
+    for figure in &done.figures {
+        text += &format!("{}: {:.6}\n", figure.name, figure.value);
+    }
+    for line in warnings::lines(&done.warnings) {
+        text += &format!("warning: {line}\n");
+    }
+    for file in files {
+        text += &format!("wrote {} ({})\n", file.path, file.kind);
+    }
+    text
+}

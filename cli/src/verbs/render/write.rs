@@ -1,0 +1,62 @@
+//! Writes pictures and arrays of a render.
+
+use std::path::Path;
+
+use gnomon_pipeline::measure::render::Rendered;
+
+use super::args::RenderArgs;
+use super::job::Job;
+use crate::error::CliError;
+use crate::output::files::Batch;
+use crate::output::json::FileDocument;
+use crate::output::progress::Progress;
+use crate::output::{npy, png};
+use crate::overlay;
+
+/// Draws and writes everything that was asked for, or nothing.
+pub(super) fn write(
+    job: &Job,
+    args: &RenderArgs,
+    done: &Rendered,
+    progress: &Progress,
+) -> Result<Vec<FileDocument>, CliError> {
+    let mut batch = Batch::default();
+    let mut written = Vec::new();
+    let mut stage = |kind, path: &Path, bytes: &[u8]| {
+        written.push(FileDocument {
+            kind,
+            path: path.display().to_string(),
+        });
+        batch.stage(path, bytes)
+    };
+    progress.doing("writing");
+    stage("render", &job.out, &png::encode(&overlay::picture(done)))?;
+    if let Some(path) = &args.visibility {
+        stage(
+            "visibility",
+            path,
+            &npy::encode(done.size, &done.visibility),
+        )?;
+    }
+    progress.step();
+    let heat = job.heat()?;
+    let wedges = job.wedges()?;
+    let source = overlay::Source {
+        scene: &job.scene,
+        params: &job.params,
+        done,
+        heat: heat.as_ref(),
+        wedges: wedges.as_ref(),
+    };
+    for (kind, path) in &job.overlays {
+        progress.doing(format!("drawing {}", kind.name()));
+        stage(
+            kind.name(),
+            path,
+            &png::encode(&overlay::draw(*kind, &source)),
+        )?;
+        progress.step();
+    }
+    batch.commit()?;
+    Ok(written)
+}

@@ -1,0 +1,19 @@
+//! Texture look-ups: the arithmetic of `docs/texture-rules.md`, over the storage of
+//! [`crate::texture`].
+
+mod address;
+mod cube;
+mod fetch;
+mod lod;
+mod sample;
+#[cfg(test)]
+mod twin;
+
+use crate::state::Sampler;
+use crate::texture::Texture;
+
+/// A texture and sampler while a pass is executed.
+pub(crate) struct BoundTexture<'a> {
+    pub(crate) texture: &'a Texture,
+    pub(crate) sampler: Sampler,
+}

@@ -4,7 +4,7 @@ use gnomon_pipeline::technique::{
     Capabilities, Condition, Domain, LightKinds, ParamInfo, ShadowKind, Source, Technique, Value,
     WedgeUse, Whole,
 };
-use gnomon_pipeline::techniques;
+use gnomon_pipeline::techniques::Registry;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -166,13 +166,13 @@ fn values(p: &ParamInfo) -> String {
 }
 
 /// Lists the techniques with their parameters.
-pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
+pub(crate) fn run(args: &ListArgs, registry: &Registry) -> Result<(), CliError> {
     if args.json {
-        let techniques = techniques::all().iter().map(|t| document(*t)).collect();
+        let techniques = registry.all().iter().map(|t| document(*t)).collect();
         return output::print_json(&TechniquesDocument { techniques });
     }
     let mut text = String::new();
-    for technique in techniques::all() {
+    for technique in registry.all() {
         text += &hanging(&format!("{}  ", technique.name()), 4, technique.summary());
         for p in technique.params() {
             let setting = format!("    --set {}={}  ", p.name, p.default);

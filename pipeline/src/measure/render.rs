@@ -116,11 +116,28 @@ pub fn render(
     settings: &RenderSettings,
 ) -> Result<Rendered, RenderError> {
     let mut frame = technique.frame(scene, settings.size, params)?;
+    check_roles(technique, &frame)?;
     frame.warnings.extend(params.without_effect(scene));
     let mut gpu = Gpu::new(settings.gpu)?;
     gpu.load(&frame.recording)?;
     let times = Times::measure(&mut gpu, &frame, settings.repeat)?;
     read_back(&gpu, scene, frame, settings.size, times)
+}
+
+/// Roles are beside the passes, and go wrong without being noticed.
+fn check_roles(technique: &dyn Technique, frame: &Frame) -> Result<(), TechniqueError> {
+    let [passes, roles] = [
+        frame.recording.list.passes.len(),
+        frame.roles.passes().len(),
+    ];
+    if passes == roles {
+        return Ok(());
+    }
+    Err(TechniqueError::MissingRoles {
+        technique: technique.name(),
+        passes,
+        roles,
+    })
 }
 
 /// Times of repeated frames and the counters of the last.

@@ -128,6 +128,16 @@ pub enum TechniqueError {
         /// What each would need.
         why: &'static str,
     },
+    /// A frame that does not say what its passes are for.
+    #[error("technique '{technique}' gives {passes} passes and the roles of {roles}; each has one")]
+    MissingRoles {
+        /// The technique.
+        technique: &'static str,
+        /// Passes of the frame.
+        passes: usize,
+        /// Roles of the frame.
+        roles: usize,
+    },
     /// A light that the scene does not have.
     #[error("light {given} was asked for; the scene has {count}, numbered from 0")]
     NoSuchLight {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use gnomon_pipeline::measure::heat::{self, Heat};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered};
 use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
-use gnomon_pipeline::techniques::{self, find};
+use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
 use super::args::RenderArgs;
@@ -28,8 +28,9 @@ pub(super) struct Job {
 }
 
 impl Job {
-    pub(super) fn new(args: &RenderArgs) -> Result<Self, CliError> {
-        let technique = find(&args.technique)?;
+    pub(super) fn new(args: &RenderArgs, registry: &Registry) -> Result<Self, CliError> {
+        let technique = registry.find(&args.technique)?;
+        check_wedges(args, technique, registry)?;
         let params = verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
         if let Some(out) = &args.out {
             files::check_extension("--out", out, "png")?;
@@ -50,7 +51,6 @@ impl Job {
         out: Option<PathBuf>,
     ) -> Result<Self, CliError> {
         check_overlays(args, &scene)?;
-        check_wedges(args, technique)?;
         let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
         let out = out.unwrap_or_else(|| default_out(&scene.name, technique.name()));
         files::check_target(&out)?;
@@ -123,12 +123,16 @@ fn check_overlays(args: &RenderArgs, scene: &Scene) -> Result<(), CliError> {
 }
 
 /// Refuses the wedges of a technique that has none.
-fn check_wedges(args: &RenderArgs, technique: &dyn Technique) -> Result<(), CliError> {
+pub(super) fn check_wedges(
+    args: &RenderArgs,
+    technique: &dyn Technique,
+    registry: &Registry,
+) -> Result<(), CliError> {
     let wanted = args.overlay.contains(&OverlayKind::Wedges);
     if !wanted || technique.capabilities().has_wedges() {
         return Ok(());
     }
-    let all = techniques::all().iter();
+    let all = registry.all().iter();
     let with_wedges = all.filter(|t| t.capabilities().has_wedges());
     let names: Vec<&str> = with_wedges.map(|t| t.name()).collect();
     Err(CliError::Flag {

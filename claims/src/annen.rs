@@ -14,6 +14,7 @@ use super::{
     Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict, annen_shadows, annen_sky,
     annen_table,
 };
+use gnomon_pipeline::technique::PassRole;
 use gnomon_pipeline::technique::TechniqueError;
 
 pub(super) const CLAIMS: &[Claim] = &[
@@ -122,7 +123,7 @@ impl LookUps {
         let frame = |threshold| {
             let set = [filter, threshold, "map-size=256", "fit=receivers"];
             let done = lab.render(&scene, TECHNIQUE, &set)?;
-            Ok::<_, ReproduceError>(counters(&done, &["look-up"]))
+            Ok::<_, ReproduceError>(counters(&done, &[PassRole::LookUp]))
         };
         let [more, less] = [frame("threshold=0.02")?, frame("threshold=0.7")?];
         let fetches = |slot: usize| more.traffic.tex_fetches[slot] as f64;
@@ -189,7 +190,7 @@ impl Images {
         let made = lab.textures(&scene, TECHNIQUE, &[filter, &side])?;
         let find = |label: &str| made.iter().find(|t| t.label == label).cloned();
         let all = || Some((find("csm")?, find("csm-z")?, find("csm depth")?));
-        let (csm, csm_z, depth) = all().ok_or(NO_IMAGES)?;
+        let (csm, csm_z, depth) = all().ok_or_else(no_images)?;
         Ok(Self { csm, csm_z, depth })
     }
 
@@ -199,12 +200,14 @@ impl Images {
     }
 }
 
-const NO_IMAGES: TechniqueError = TechniqueError::BadValue {
-    technique: TECHNIQUE,
-    key: "filter",
-    value: String::new(),
-    valid: "filters that make textures csm, csm-z and csm depth",
-};
+fn no_images() -> TechniqueError {
+    TechniqueError::BadValue {
+        technique: TECHNIQUE,
+        key: "filter",
+        value: String::new(),
+        valid: "filters that make textures csm, csm-z and csm depth".to_owned(),
+    }
+}
 
 /// Bytes of a texel of a light view, without mip levels.
 fn a_texel(texture: &TextureDescriptor, side: u32) -> f64 {

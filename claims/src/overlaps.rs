@@ -3,16 +3,17 @@
 
 use gnomon_raster::{AccessBatch, AccessObserver, BlockAccess, Wants};
 
+use gnomon_pipeline::technique::{PassRole, Roles};
+
 use super::{Lab, ReproduceError};
 use gnomon_pipeline::world::scene::Scene;
 
 /// Wedges by pixel.
 pub(super) struct Overlaps {
     columns: usize,
-    /// Which passes draw wedges.
-    wedges: Vec<bool>,
     /// Writes of each pixel by the wedges of the group that is being drawn.
     writes: Vec<u32>,
+    roles: Roles,
 }
 
 impl Overlaps {
@@ -22,11 +23,10 @@ impl Overlaps {
     pub(super) fn measure(lab: &Lab, scene: &Scene, set: &[&str]) -> Result<Self, ReproduceError> {
         let (mut gpu, frame) = lab.frame(scene, "soft-shadow-volumes-optimised", set)?;
         let [width, height] = lab.size().map(|s| s as usize);
-        let passes = frame.recording.list.passes.iter();
         let mut counted = Self {
             columns: width,
-            wedges: passes.map(|p| p.label == "wedges").collect(),
             writes: vec![0; width * height],
+            roles: frame.roles,
         };
         gpu.submit_observed(&frame.recording.list, Wants::default(), &mut counted)?;
         Ok(counted)
@@ -59,7 +59,7 @@ impl Overlaps {
 
 impl AccessObserver for Overlaps {
     fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
-        if self.wedges.get(pass) == Some(&true) {
+        if self.roles.of_pass(pass) == PassRole::Wedges {
             batch.blocks.iter().for_each(|a| self.count(a));
         }
     }
@@ -71,10 +71,13 @@ mod tests {
 
     #[test]
     fn accesses_are_counted_by_pixel() {
+        let mut roles = Roles::default();
+        roles.push(PassRole::HardCount, Vec::new());
+        roles.push(PassRole::Wedges, Vec::new());
         let mut counted = Overlaps {
             columns: 10,
-            wedges: vec![false, true],
             writes: vec![0; 100],
+            roles,
         };
         let mut access = BlockAccess {
             block: [1, 0],

@@ -8,6 +8,7 @@ use super::tally::{counters, pass_time, ratio};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::technique::PassRole;
 
 const TECHNIQUE: &str = "penumbra-wedges";
 
@@ -51,14 +52,14 @@ pub(super) const CLAIMS: &[Claim] = &[
 ];
 
 fn wedge_pixels(done: &Rendered) -> u64 {
-    counters(done, &["wedges"]).fragment_shader_invocations
+    counters(done, &[PassRole::Wedges]).fragment_shader_invocations
 }
 
 fn extra_wedges(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let scene = acute_triangle()?;
     let runs: [(&str, &[&str]); 2] = [(TECHNIQUE, &[]), (TECHNIQUE, &["extra-wedges=off"])];
     let [on, off] = lab.race(&scene, runs)?;
-    let time = |done| pass_time(done, &["wedges"]);
+    let time = |done| pass_time(done, &[PassRole::Wedges]);
     Ok(Finding {
         scene: lab.describe("floating triangle with an angle of 14 degrees, spherical light"),
         counted:
@@ -102,7 +103,7 @@ fn side_planes(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             (TECHNIQUE, &["side-planes=cancel"]),
         ],
     )?;
-    let time = |done| pass_time(done, &["wedges"]);
+    let time = |done| pass_time(done, &[PassRole::Wedges]);
     Ok(Finding {
         scene: lab.describe("cylinder"),
         counted: "time of the pass `wedges`; constants are precomputed in both".to_owned(),
@@ -121,9 +122,9 @@ fn side_planes(lab: &mut Lab) -> Result<Finding, ReproduceError> {
 
 /// Wedges, one draw each.
 fn wedge_draws(done: &Rendered) -> u64 {
-    let passes = done.report.passes.iter();
-    let wedges = passes.filter(|p| p.label == "wedges");
-    wedges.map(|p| p.draws.len() as u64).sum()
+    let passes = done.report.passes.iter().zip(done.roles.passes());
+    let wedges = passes.filter(|(_, role)| **role == PassRole::Wedges);
+    wedges.map(|(p, _)| p.draws.len() as u64).sum()
 }
 
 /// One scene's wedges.
@@ -143,7 +144,7 @@ fn cost(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             all.push(Sample {
                 edges: wedge_draws(&done) as f64,
                 pixels: wedge_pixels(&done) as f64 / 1e6,
-                time: pass_time(&done, &["wedges"]),
+                time: pass_time(&done, &[PassRole::Wedges]),
             });
         }
     }

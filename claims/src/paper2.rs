@@ -12,6 +12,7 @@ use super::tally::{counters, pass_time, ratio};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::measure::tile_traffic::{self, Measured};
+use gnomon_pipeline::technique::PassRole;
 
 /// What an access is.
 pub(super) const BYTES: &str = "depth 4 B (float texture), zmin or zmax 4 B, light-intensity buffer 2 B, \
@@ -109,7 +110,7 @@ pub(super) const CLAIMS: &[Claim] = &[
 
 /// Reads of depth by penumbrae, which the three-pass algorithm has apart.
 fn penumbra_reads(done: &Rendered) -> u64 {
-    counters(done, &["penumbra"]).traffic.tex[0].read_accesses
+    counters(done, &[PassRole::Wedges]).traffic.tex[0].read_accesses
 }
 
 fn culling(lab: &mut Lab) -> Result<Finding, ReproduceError> {
@@ -129,7 +130,7 @@ fn culling(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             ratio(penumbra_reads(&without), penumbra_reads(&with)),
             Unit::Ratio,
         ));
-        let time = |done| pass_time(done, &["penumbra"]);
+        let time = |done| pass_time(done, &[PassRole::Wedges]);
         measures.push(Measure::beside(
             format!("{name}: penumbra time, without over with"),
             "3-4x",
@@ -205,7 +206,7 @@ fn zmax_only(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         Measure::beside(
             "penumbra time, zmax over both",
             "2.7x frame",
-            pass_time(&zmax, &["penumbra"]) / pass_time(&both, &["penumbra"]),
+            pass_time(&zmax, &[PassRole::Wedges]) / pass_time(&both, &[PassRole::Wedges]),
             Unit::Ratio,
         ),
     ];

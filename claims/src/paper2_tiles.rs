@@ -5,6 +5,7 @@ use super::tally::ratio;
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use crate::chart::{Axis, Chart, Series};
 use gnomon_pipeline::measure::tile_traffic::{TileTraffic, measure};
+use gnomon_pipeline::technique::PassRole;
 
 pub(super) const TECHNIQUE: &str = "penumbra-wedges-restructured";
 
@@ -191,11 +192,8 @@ fn penumbra_share(lab: &Lab, scene: &str) -> Result<f64, ReproduceError> {
     let (_, params) = parsed(TECHNIQUE, &["passes=three"])?;
     let settings = lab.settings();
     let measured = measure(&scene, settings.size, &params, settings.gpu)?;
-    let passes = measured
-        .report
-        .passes
-        .iter()
-        .filter(|p| p.label == "penumbra");
-    let reads = passes.map(|p| p.totals().traffic.tex[0].read_accesses);
+    let passes = measured.report.passes.iter().zip(measured.roles.passes());
+    let wedges = passes.filter(|(_, role)| **role == PassRole::Wedges);
+    let reads = wedges.map(|(p, _)| p.totals().traffic.tex[0].read_accesses);
     Ok(ratio(reads.sum(), measured.traffic.depth_reads))
 }

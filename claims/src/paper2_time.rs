@@ -4,15 +4,14 @@ use super::paper2::BYTES;
 use super::paper2_tiles::TECHNIQUE;
 use super::tally::{counters, pass_time, ratio};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
+use gnomon_pipeline::technique::PassRole;
 
 /// The passes of a light besides ambient, tile depths and lit.
-const WEDGES: [&str; 6] = [
-    "umbra caps",
-    "umbra front",
-    "umbra back",
-    "umbra counts",
-    "penumbra",
-    "wedges",
+const WEDGES: [PassRole; 4] = [
+    PassRole::UmbraCaps,
+    PassRole::UmbraStencil,
+    PassRole::UmbraCounts,
+    PassRole::Wedges,
 ];
 
 pub(super) fn restructuring(lab: &mut Lab) -> Result<Finding, ReproduceError> {

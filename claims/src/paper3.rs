@@ -8,6 +8,7 @@ use super::tally::{bytes_of, counters, draws, ratio};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::technique::{DrawRole, PassRole};
 use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::world::scene::Scene;
 
@@ -83,7 +84,11 @@ pub(super) const CLAIMS: &[Claim] = &[
 
 /// Depth, stencil and colour of the shadow passes, in bytes: what the paper counted.
 fn buffer_bytes(done: &Rendered) -> u64 {
-    let t = counters(done, &["samples", "quads", "wedges"]).traffic;
+    let t = counters(
+        done,
+        &[PassRole::Samples, PassRole::HardCount, PassRole::Wedges],
+    )
+    .traffic;
     t.z.bytes() + t.stencil.bytes() + t.color.iter().map(|c| c.bytes()).sum::<u64>()
 }
 
@@ -101,7 +106,10 @@ fn bandwidth(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         .map(|n| sampled(lab, &scene, *n))
         .collect::<Result<_, _>>()?;
     let soft = lab.render(&scene, TECHNIQUE, &["wedge=paper3"])?;
-    let positions = counters(&soft, &["quads", "wedges"]).traffic.tex[0].read_bytes;
+    let positions = counters(&soft, &[PassRole::HardCount, PassRole::Wedges])
+        .traffic
+        .tex[0]
+        .read_bytes;
     let soft = buffer_bytes(&soft);
     let points = counts.iter().zip(&bytes);
     let points = points.map(|(n, b)| [f64::from(*n), *b as f64 / 1e6]);
@@ -217,15 +225,12 @@ fn texture_size(lab: &mut Lab) -> Result<Finding, ReproduceError> {
 fn passes(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let scene = lab.scene("cylinder")?;
     let done = lab.render(&scene, TECHNIQUE, &["copy-back=on", "wedge=paper3"])?;
-    let of = |label: &str| {
-        done.report
-            .passes
-            .iter()
-            .filter(|p| p.label == label)
-            .count()
+    let of = |role: PassRole| {
+        let roles = done.roles.passes().iter();
+        roles.filter(|r| **r == role).count()
     };
-    let wedges = draws(&done, "penumbra aside");
-    let per_wedge = of("wedges") as f64 / wedges as f64;
+    let wedges = draws(&done, DrawRole::CoverageAside);
+    let per_wedge = of(PassRole::Wedges) as f64 / wedges as f64;
     Ok(Finding {
         scene: lab.describe("cylinder"),
         counted: "render passes, wedges one by one into floats without blending (copy-back=on)"
@@ -246,7 +251,7 @@ fn passes(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             Measure::beside(
                 "passes for all umbrae together",
                 "2 per wedge",
-                of("quads") as f64,
+                of(PassRole::HardCount) as f64,
                 Unit::Count,
             ),
         ],

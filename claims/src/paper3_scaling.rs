@@ -6,12 +6,13 @@ use super::tally::{counters, invocations, pass_time, ratio, written};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::technique::{DrawRole, PassRole};
 use gnomon_pipeline::world::scene::Scene;
 
-const SHADOW: [&str; 2] = ["quads", "wedges"];
+const SHADOW: [PassRole; 2] = [PassRole::HardCount, PassRole::Wedges];
 
 fn shaded(done: &Rendered) -> u64 {
-    invocations(done, "penumbra")
+    invocations(done, DrawRole::Coverage)
 }
 
 pub(super) fn resolution(lab: &mut Lab) -> Result<Finding, ReproduceError> {
@@ -62,12 +63,17 @@ pub(super) fn resolution(lab: &mut Lab) -> Result<Finding, ReproduceError> {
 /// the depth test, which a draw of its own notes; all of them where the eye is in a
 /// wedge, which has no such draw.
 pub(super) fn behind_front(done: &Rendered) -> u64 {
-    let passes = done.report.passes.iter();
-    let draws: Vec<_> = passes.flat_map(|p| &p.draws).collect();
-    let alone = |k: usize| k == 0 || draws[k - 1].label != "note";
-    let around_eye = (0..draws.len()).filter(|k| draws[*k].label == "penumbra" && alone(*k));
-    let around_eye = around_eye.map(|k| draws[k].counters.fragment_shader_invocations);
-    written(done, "note") + around_eye.sum::<u64>()
+    let mut around_eye = 0;
+    for (number, pass) in done.report.passes.iter().enumerate() {
+        let role = |draw| done.roles.of_draw(number, draw);
+        let alone = |k: usize| k == 0 || role(k - 1) != DrawRole::Note;
+        for (k, draw) in pass.draws.iter().enumerate() {
+            if role(k) == DrawRole::Coverage && alone(k) {
+                around_eye += draw.counters.fragment_shader_invocations;
+            }
+        }
+    }
+    written(done, DrawRole::Note) + around_eye
 }
 
 pub(super) fn light_side(lab: &mut Lab) -> Result<Finding, ReproduceError> {
@@ -123,7 +129,7 @@ struct Cost {
 fn cost(lab: &Lab, scene: &Scene) -> Result<Cost, ReproduceError> {
     let done = lab.timed(scene, TECHNIQUE, &[])?;
     Ok(Cost {
-        draws: super::tally::draws(&done, "penumbra") as u64,
+        draws: super::tally::draws(&done, DrawRole::Coverage) as u64,
         pixels: shaded(&done),
         bytes: counters(&done, &SHADOW).traffic.total_bytes(),
         time: pass_time(&done, &SHADOW),

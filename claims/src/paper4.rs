@@ -6,6 +6,7 @@ use super::paper4_quality as quality;
 use super::shader_work::{PAPER3_EXACT, PAPER3_TABLE, PAPER4_ARITHMETIC, PAPER4_TABLES, published};
 use super::tally::{bytes_of, invocations, pass_time, ratio};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict, paper3};
+use gnomon_pipeline::technique::{DrawRole, PassRole};
 use gnomon_pipeline::world::scene::Scene;
 
 pub(super) const TECHNIQUE: &str = "soft-shadow-volumes-optimised";
@@ -135,7 +136,7 @@ fn speed_up(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         let all = lab.render(&scene, paper3::TECHNIQUE, &["wedge=paper3", "skip=off"])?;
         let four = lab.render(&scene, TECHNIQUE, &PAPER4)?;
         let before = scaling::behind_front(&three);
-        let after = invocations(&four, "penumbra");
+        let after = invocations(&four, DrawRole::Coverage);
         let beside = |what: &str, theirs, ours| {
             Measure::beside(format!("{name}: {what}"), theirs, ours, Unit::Ratio)
         };
@@ -159,7 +160,7 @@ fn speed_up(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             beside(
                 "invocations, if nothing were skipped before",
                 "-",
-                ratio(invocations(&all, "penumbra"), after),
+                ratio(invocations(&all, DrawRole::Coverage), after),
             ),
         ]);
     }
@@ -194,7 +195,12 @@ fn speed_up_time(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             (TECHNIQUE, &PAPER4),
             (TECHNIQUE, &["wedge=paper4"]),
         ];
-        let shadow = ["quads", "wedges", "combine", "resolve"];
+        let shadow = [
+            PassRole::HardCount,
+            PassRole::Wedges,
+            PassRole::Combine,
+            PassRole::Resolve,
+        ];
         let done = lab.race(&scene, runs)?;
         let [three, tables, computed] = done.each_ref().map(|d| pass_time(d, &shadow));
         measures.push(Measure::new(
@@ -231,7 +237,7 @@ fn tight_wedges(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         let scene = lab.scene(name)?;
         let pixels = |wedge: &str, skip: &str| {
             let done = lab.render(&scene, TECHNIQUE, &[wedge, skip])?;
-            Ok::<_, ReproduceError>(invocations(&done, "penumbra"))
+            Ok::<_, ReproduceError>(invocations(&done, DrawRole::Coverage))
         };
         let shaded = |skip: &str| {
             Ok::<_, ReproduceError>(ratio(
@@ -282,13 +288,19 @@ fn culling(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         measures.push(Measure::beside(
             format!("{name}: invocations, without over with"),
             "-",
-            ratio(invocations(&off, "penumbra"), invocations(&on, "penumbra")),
+            ratio(
+                invocations(&off, DrawRole::Coverage),
+                invocations(&on, DrawRole::Coverage),
+            ),
             Unit::Ratio,
         ));
         measures.push(Measure::beside(
             format!("{name}: pixels behind front faces, over those shaded"),
             "-",
-            ratio(scaling::behind_front(&on), invocations(&on, "penumbra")),
+            ratio(
+                scaling::behind_front(&on),
+                invocations(&on, DrawRole::Coverage),
+            ),
             Unit::Ratio,
         ));
     }

@@ -7,6 +7,7 @@ use super::tally::{counters, pass_time};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::technique::PassRole;
 
 /// Scenes, and whether they have a complex model, as the claim asks for.
 const SCENES: [(&str, bool); 4] = [
@@ -88,7 +89,13 @@ struct Point {
     time: f64,
 }
 
-const SHADOW: [&str; 5] = ["samples", "quads", "wedges", "combine", "resolve"];
+const SHADOW: [PassRole; 5] = [
+    PassRole::Samples,
+    PassRole::HardCount,
+    PassRole::Wedges,
+    PassRole::Combine,
+    PassRole::Resolve,
+];
 
 fn point(
     lab: &mut Lab,

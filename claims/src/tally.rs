@@ -1,8 +1,9 @@
-//! Counters, times and bytes of a frame, by the names of passes and draws.
+//! Counters, times and bytes of a frame, by the roles of passes and draws.
 
 use gnomon_raster::{Counters, TextureDescriptor, TextureDimension};
 
 use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::technique::{DrawRole, PassRole};
 
 /// Bytes of a texture without mip levels.
 pub(super) fn bytes_of(texture: &TextureDescriptor) -> u64 {
@@ -23,59 +24,53 @@ pub(super) fn bytes_with_levels(texture: &TextureDescriptor) -> u64 {
     (0..texture.mip_levels).map(level).sum()
 }
 
-/// Sum of the counters of all passes that are called one of `labels`; with several
-/// lights labels carry the light's number behind.
-pub(super) fn counters(done: &Rendered, labels: &[&str]) -> Counters {
+/// Sum of the counters of all passes that have one of `roles`.
+pub(super) fn counters(done: &Rendered, roles: &[PassRole]) -> Counters {
     let mut sum = Counters::default();
-    let passes = done.report.passes.iter();
-    for pass in passes.filter(|p| is_one_of(&p.label, labels)) {
-        sum.add(&pass.totals());
+    for (pass, role) in done.report.passes.iter().zip(done.roles.passes()) {
+        if roles.contains(role) {
+            sum.add(&pass.totals());
+        }
     }
     sum
 }
 
 /// Milliseconds of the same passes.
-pub(super) fn pass_time(done: &Rendered, labels: &[&str]) -> f64 {
-    let passes = done.pass_ms.iter();
+pub(super) fn pass_time(done: &Rendered, roles: &[PassRole]) -> f64 {
+    let passes = done.pass_ms.iter().zip(done.roles.passes());
     passes
-        .filter(|(label, _)| is_one_of(label, labels))
-        .map(|(_, ms)| ms)
+        .filter(|(_, role)| roles.contains(role))
+        .map(|((_, ms), _)| ms)
         .sum()
 }
 
-fn is_one_of(label: &str, labels: &[&str]) -> bool {
-    let is_number = |rest: &str| {
-        rest.strip_prefix(' ')
-            .is_some_and(|n| n.parse::<u32>().is_ok())
-    };
-    let rests = labels.iter().filter_map(|l| label.strip_prefix(l));
-    rests
-        .into_iter()
-        .any(|rest| rest.is_empty() || is_number(rest))
-}
-
-/// Invocations of the draws that are called `draw`, in all passes.
-pub(super) fn invocations(done: &Rendered, draw: &str) -> u64 {
-    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
+/// Counters of the draws that are for `role`, in all passes.
+fn of_draws(done: &Rendered, role: DrawRole) -> impl Iterator<Item = &Counters> {
+    let passes = done.report.passes.iter().enumerate();
+    let draws = passes.flat_map(|(p, pass)| {
+        let draws = pass.draws.iter().enumerate();
+        draws.map(move |(d, draw)| ([p, d], &draw.counters))
+    });
     draws
-        .filter(|d| d.label == draw)
-        .map(|d| d.counters.fragment_shader_invocations)
+        .filter(move |([pass, draw], _)| done.roles.of_draw(*pass, *draw) == role)
+        .map(|(_, counters)| counters)
+}
+
+/// Invocations of the draws that are for `role`.
+pub(super) fn invocations(done: &Rendered, role: DrawRole) -> u64 {
+    of_draws(done, role)
+        .map(|c| c.fragment_shader_invocations)
         .sum()
 }
 
-/// Fragments that draws called `draw` wrote, in all passes.
-pub(super) fn written(done: &Rendered, draw: &str) -> u64 {
-    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
-    draws
-        .filter(|d| d.label == draw)
-        .map(|d| d.counters.fragments.written)
-        .sum()
+/// Fragments that draws for `role` wrote.
+pub(super) fn written(done: &Rendered, role: DrawRole) -> u64 {
+    of_draws(done, role).map(|c| c.fragments.written).sum()
 }
 
-/// Draws that are called `draw`, in all passes.
-pub(super) fn draws(done: &Rendered, draw: &str) -> usize {
-    let draws = done.report.passes.iter().flat_map(|p| &p.draws);
-    draws.filter(|d| d.label == draw).count()
+/// Draws that are for `role`.
+pub(super) fn draws(done: &Rendered, role: DrawRole) -> usize {
+    of_draws(done, role).count()
 }
 
 /// A ratio of counts; not finite for nothing.

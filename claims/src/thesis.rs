@@ -6,6 +6,7 @@ use super::tally::{counters, pass_time};
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::technique::PassRole;
 use gnomon_pipeline::world::scene::Scene;
 
 pub(super) const CLAIMS: &[Claim] = &[
@@ -41,7 +42,7 @@ const SAMPLES: [u32; 5] = [16, 64, 256, 484, 1024];
 const LEVELS: f64 = 255.0;
 
 /// Passes of a technique's shadow.
-const SHADOW: [&str; 3] = ["samples", "quads", "wedges"];
+const SHADOW: [PassRole; 3] = [PassRole::Samples, PassRole::HardCount, PassRole::Wedges];
 
 struct Sample {
     count: u32,

@@ -1,6 +1,7 @@
 //! The command line: verbs, each with its own flags.
 
 use clap::{Parser, Subcommand};
+use gnomon_pipeline::techniques::Registry;
 
 use crate::error::CliError;
 use crate::flags::ListArgs;
@@ -38,15 +39,15 @@ pub(crate) enum Verb {
 }
 
 impl Verb {
-    /// Does it.
-    pub(crate) fn run(&self) -> Result<(), CliError> {
+    /// Does it, with the techniques of `registry`.
+    pub(crate) fn run(&self, registry: &Registry) -> Result<(), CliError> {
         match self {
-            Self::Compare(args) => verbs::compare::run(args),
+            Self::Compare(args) => verbs::compare::run(args, registry),
             Self::Demo(args) => verbs::demo::run(args),
-            Self::Render(args) => verbs::render::run(args),
+            Self::Render(args) => verbs::render::run(args, registry),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
-            Self::Techniques(args) => verbs::techniques::run(args),
+            Self::Techniques(args) => verbs::techniques::run(args, registry),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The command line: arguments, progress, exit codes; the work is done by the
-//! other packages. [`run`] is the program; [`draw`] is for programs that plot what
+//! other packages. [`run`] is the program, [`run_with`] the same with techniques of
+//! other crates; [`draw`] is for programs that plot what
 //! they measured.
 
 mod command_line;
@@ -14,17 +15,23 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
+use gnomon_pipeline::techniques::Registry;
 
 use command_line::Cli;
 
 /// Runs the program on `arguments`, the first of which is its own name: 0 fine,
 /// 1 differs or a check failed, 2 bad input.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    run_with(&Registry::built_in(), arguments)
+}
+
+/// The same with the techniques of `registry` instead of the built-in ones.
+pub fn run_with(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) => return told(&error),
     };
-    match cli.verb.run() {
+    match cli.verb.run(registry) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");

@@ -302,7 +302,7 @@ fn every_technique_with_volumes_refuses_an_open_cylinder() {
     let scene = scenes(&open_cylinder()).remove(0);
     let mut refusing = 0;
     for technique in techniques::all() {
-        if technique.params().iter().all(|p| p.name != "open-casters") {
+        if !technique.capabilities().needs_closed_casters() {
             continue;
         }
         let settings = RenderSettings {

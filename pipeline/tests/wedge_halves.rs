@@ -4,7 +4,7 @@
 use glam::DVec3;
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::measure::wedge_work::WedgeWork;
-use gnomon_pipeline::technique::Params;
+use gnomon_pipeline::technique::{Params, PassRole};
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::world::light::{Light, LightShape};
 use gnomon_pipeline::world::scene::{Scene, builtin};
@@ -25,8 +25,9 @@ fn optimised(scene: &Scene, set: &[&str]) -> Rendered {
 fn wedges(picture: &Rendered) -> Counters {
     let mut sum = Counters::default();
     let passes = picture.report.passes.iter();
-    let of_wedges = passes.filter(|p| p.label.starts_with("wedges"));
-    of_wedges.for_each(|p| sum.add(&p.totals()));
+    let of_wedges = passes.zip(picture.roles.passes());
+    let of_wedges = of_wedges.filter(|(_, role)| **role == PassRole::Wedges);
+    of_wedges.for_each(|(p, _)| sum.add(&p.totals()));
     sum
 }
 
@@ -92,7 +93,7 @@ fn halves_save_colour_traffic_and_shade_little_more() {
         let counters = wedges(&picture);
         let colour: u64 = counters.traffic.color.iter().map(|t| t.bytes()).sum();
         let stencil = counters.traffic.stencil.bytes();
-        let work = WedgeWork::of(&picture.report).unwrap();
+        let work = WedgeWork::of(&picture.report, &picture.roles).unwrap();
         println!("{set:?}: colour {colour} B, stencil {stencil} B, {work:?}");
         (colour, work)
     };

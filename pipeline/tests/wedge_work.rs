@@ -21,8 +21,8 @@ fn work(name: &str, scene: &Scene, set: &[&str]) -> WedgeWork {
         size: SIZE,
         ..RenderSettings::default()
     };
-    let Rendered { report, .. } = render(scene, technique, &params, &settings).unwrap();
-    let work = WedgeWork::of(&report).unwrap();
+    let Rendered { report, roles, .. } = render(scene, technique, &params, &settings).unwrap();
+    let work = WedgeWork::of(&report, &roles).unwrap();
     println!("{name} {set:?}: {work:?}, ratio {:.3}", work.ratio());
     work
 }
@@ -101,5 +101,5 @@ fn frames_without_wedges_have_no_such_figure() {
     };
     let params = Params::defaults(technique);
     let done = render(&scene, technique, &params, &settings).unwrap();
-    assert_eq!(WedgeWork::of(&done.report), None);
+    assert_eq!(WedgeWork::of(&done.report, &done.roles), None);
 }

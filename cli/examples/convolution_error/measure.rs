@@ -165,11 +165,6 @@ impl Row {
     }
 }
 
-/// Passes that are not of the shadow.
-fn is_shading(label: &str) -> bool {
-    label.starts_with("ambient") || label.starts_with("lit")
-}
-
 /// A frame, with time and bytes of its shadow passes.
 struct Drawn(Rendered, f64, f64);
 
@@ -198,8 +193,9 @@ fn drawn(scene: &Scene, setup: &Setup) -> Result<Drawn, Box<dyn Error>> {
         render(scene, technique, &params, &settings)
     };
     let shadow = |done: &Rendered| -> f64 {
-        let passes = done.pass_ms.iter().filter(|(l, _)| !is_shading(l));
-        passes.map(|(_, ms)| ms).sum()
+        let passes = done.pass_ms.iter().zip(done.roles.passes());
+        let of_shadow = passes.filter(|(_, role)| !role.is_shading());
+        of_shadow.map(|((_, ms), _)| ms).sum()
     };
     let done = frame(1)?;
     let mut ms = shadow(&done);
@@ -211,8 +207,11 @@ fn drawn(scene: &Scene, setup: &Setup) -> Result<Drawn, Box<dyn Error>> {
     } else {
         ms = ms.min(shadow(&frame(1)?));
     }
-    let passes = done.report.passes.iter().filter(|p| !is_shading(&p.label));
-    let bytes: u64 = passes.map(|p| p.totals().traffic.total_bytes()).sum();
+    let passes = done.report.passes.iter().zip(done.roles.passes());
+    let of_shadow = passes.filter(|(_, role)| !role.is_shading());
+    let bytes: u64 = of_shadow
+        .map(|(p, _)| p.totals().traffic.total_bytes())
+        .sum();
     Ok(Drawn(done, ms, bytes as f64))
 }
 

@@ -165,8 +165,8 @@ pub(crate) struct WedgeWorkDocument {
 }
 
 impl WedgeWorkDocument {
-    pub(crate) fn of(report: &SubmitReport) -> Option<Self> {
-        WedgeWork::of(report).map(|work| Self {
+    pub(crate) fn of(done: &Rendered) -> Option<Self> {
+        WedgeWork::of(&done.report, &done.roles).map(|work| Self {
             shaded: work.shaded,
             covering: work.covering,
             ratio: Some(work.ratio()).filter(|r| r.is_finite()),
@@ -215,7 +215,7 @@ impl RenderDocument {
             },
             passes: done.report.passes.iter().map(PassDocument::new).collect(),
             totals: WorkDocument::total(&done.report),
-            wedge_work: WedgeWorkDocument::of(&done.report),
+            wedge_work: WedgeWorkDocument::of(done),
             casters: casters(job.scene, done),
             figures: figures(done),
             warnings: done.warnings.iter().map(WarningDocument::new).collect(),

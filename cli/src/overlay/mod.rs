@@ -12,8 +12,7 @@ mod wedges;
 
 use gnomon_pipeline::measure::heat::Heat;
 use gnomon_pipeline::measure::render::Rendered;
-use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::techniques::scene_wedges::SceneWedges;
+use gnomon_pipeline::technique::{Params, SceneWedges};
 use gnomon_pipeline::world::scene::Scene;
 
 use crate::draw::Picture;

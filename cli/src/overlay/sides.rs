@@ -40,9 +40,10 @@ pub(super) fn of(scene: &Scene, params: &Params) -> Vec<Side> {
 
 fn lights(scene: &Scene, params: &Params) -> Vec<HardLight> {
     let all = scene.lights.iter().map(|l| l.hard());
-    match params.get("light").parse::<usize>() {
-        Ok(one) => all.skip(one).take(1).collect(),
-        Err(_) => all.collect(),
+    let one = params.text("light").map(str::parse::<usize>);
+    match one {
+        Some(Ok(one)) => all.skip(one).take(1).collect(),
+        _ => all.collect(),
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DMat4, DVec4};
 use gnomon_pipeline::geometry::wedge::{Construction, WedgeMesh};
-use gnomon_pipeline::techniques::scene_wedges::WedgeKind;
+use gnomon_pipeline::technique::WedgeKind;
 
 use super::Source;
 use crate::draw::{Canvas, Legend, Picture, Projection, Stroke, Swatch, heat};
@@ -105,7 +105,6 @@ fn coplanar(points: [DVec4; 4]) -> bool {
 mod tests {
     use gnomon_pipeline::technique::Params;
     use gnomon_pipeline::techniques::find;
-    use gnomon_pipeline::techniques::scene_wedges;
     use gnomon_pipeline::world::scene::builtin;
 
     use super::*;
@@ -117,7 +116,7 @@ mod tests {
         let scene = builtin::build("parallel-plates").unwrap();
         let technique = find("soft-shadow-volumes").unwrap();
         let params = Params::defaults(technique);
-        let wedges = scene_wedges::of_scene(&scene, technique, &params);
+        let wedges = technique.wedges(&scene, &params);
         let wedges = wedges.unwrap().unwrap().meshes;
         assert_eq!(wedges.len(), 4);
         for mesh in &wedges {

@@ -8,7 +8,7 @@ use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource};
 use thiserror::Error;
 
 use crate::technique::{
-    CasterUse, Figure, Frame, Params, Technique, TechniqueError, VisibilityOutput, Warning,
+    CasterUse, Figure, Frame, Params, Roles, Technique, TechniqueError, VisibilityOutput, Warning,
 };
 use crate::world::scene::Scene;
 
@@ -51,6 +51,8 @@ pub struct Rendered {
     pub stencil: Vec<u8>,
     /// Counters; the same for every one of the repeated frames.
     pub report: SubmitReport,
+    /// What the passes of the report and their draws are for.
+    pub roles: Roles,
     /// Median time of a frame in milliseconds; loading, silhouettes and volumes
     /// left out.
     pub frame_ms: f64,
@@ -113,11 +115,29 @@ pub fn render(
     params: &Params,
     settings: &RenderSettings,
 ) -> Result<Rendered, RenderError> {
-    let frame = technique.frame(scene, settings.size, params)?;
+    let mut frame = technique.frame(scene, settings.size, params)?;
+    check_roles(technique, &frame)?;
+    frame.warnings.extend(params.without_effect(scene));
     let mut gpu = Gpu::new(settings.gpu)?;
     gpu.load(&frame.recording)?;
     let times = Times::measure(&mut gpu, &frame, settings.repeat)?;
     read_back(&gpu, scene, frame, settings.size, times)
+}
+
+/// Roles are beside the passes, and go wrong without being noticed.
+fn check_roles(technique: &dyn Technique, frame: &Frame) -> Result<(), TechniqueError> {
+    let [passes, roles] = [
+        frame.recording.list.passes.len(),
+        frame.roles.passes().len(),
+    ];
+    if passes == roles {
+        return Ok(());
+    }
+    Err(TechniqueError::MissingRoles {
+        technique: technique.name(),
+        passes,
+        roles,
+    })
 }
 
 /// Times of repeated frames and the counters of the last.
@@ -169,7 +189,7 @@ fn read_back(
     let labels = times.report.passes.iter().map(|p| p.label.clone());
     let mut warnings = scene.warnings.clone();
     warnings.extend(frame.warnings);
-    warnings.extend(event_warnings(&times.report));
+    warnings.extend(event_warnings(&times.report, &frame.roles));
     let counted = times.report.shader_counts().into_iter();
     let counted = counted.map(|(name, n)| Figure {
         name: name.to_owned(),
@@ -185,6 +205,7 @@ fn read_back(
         frame_ms: median(times.frames),
         pass_ms: labels.zip(times.passes.into_iter().map(median)).collect(),
         report: times.report,
+        roles: frame.roles,
         warnings,
         casters: frame.casters,
         figures: frame.figures.into_iter().chain(counted).collect(),
@@ -217,22 +238,15 @@ fn visibility(
     Ok(depth.iter().zip(values).map(at).collect())
 }
 
-/// Whether a pass of that label adds up coverage or counts instead of light.
-fn adds_up_coverage(label: &str) -> bool {
-    ["quads", "wedges"]
-        .iter()
-        .any(|what| label.starts_with(what))
-}
-
 /// Events that changed the picture without stopping it.
-fn event_warnings(report: &SubmitReport) -> Vec<Warning> {
+fn event_warnings(report: &SubmitReport, roles: &Roles) -> Vec<Warning> {
     let mut total = gnomon_raster::Counters::default();
     report.passes.iter().for_each(|p| total.add(&p.totals()));
     let saturated = |coverage: bool| -> u64 {
-        let passes = report.passes.iter();
+        let passes = report.passes.iter().enumerate();
         passes
-            .filter(|p| adds_up_coverage(&p.label) == coverage)
-            .flat_map(|p| p.totals().events.blend_saturated)
+            .filter(|(number, _)| roles.of_pass(*number).adds_up_coverage() == coverage)
+            .flat_map(|(_, p)| p.totals().events.blend_saturated)
             .sum()
     };
     let events = [

@@ -21,7 +21,7 @@ use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, Part, TileTest, Wed
 use gnomon_shaders::penumbra::plane::ScreenPlane;
 
 use crate::measure::render::RenderError;
-use crate::technique::Params;
+use crate::technique::{Params, Roles};
 use crate::techniques::penumbra_wedges_restructured::{WedgeDraw, build};
 use crate::world::scene::Scene;
 
@@ -68,6 +68,8 @@ pub struct Measured {
     pub gpu: Counters,
     /// Everything that the GPU counted.
     pub report: SubmitReport,
+    /// What the passes of the report are for.
+    pub roles: Roles,
 }
 
 /// Renders a frame of `penumbra-wedges-restructured` and counts what its wedges
@@ -106,6 +108,7 @@ pub fn measure(
         traffic,
         gpu: totals,
         report,
+        roles: built.frame.roles,
     })
 }
 

@@ -7,7 +7,7 @@
 
 use gnomon_raster::{Counters, SubmitReport};
 
-use crate::parts::wedges::COVERAGE_DRAW;
+use crate::technique::{DrawRole, Roles};
 
 /// Fragments of penumbra shaders, and those that were needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,12 +23,15 @@ pub struct WedgeWork {
 impl WedgeWork {
     /// From the counters of a frame; `None` for techniques that add no coverage of
     /// wedges.
-    pub fn of(report: &SubmitReport) -> Option<Self> {
-        let draws = report.passes.iter().flat_map(|p| &p.draws);
+    pub fn of(report: &SubmitReport, roles: &Roles) -> Option<Self> {
         let mut work = Self::default();
-        for draw in draws.filter(|d| d.label == COVERAGE_DRAW) {
-            work.shaded += draw.counters.fragment_shader_invocations;
-            work.covering += changes(&draw.counters);
+        for (number, pass) in report.passes.iter().enumerate() {
+            for (k, draw) in pass.draws.iter().enumerate() {
+                if roles.of_draw(number, k) == DrawRole::Coverage {
+                    work.shaded += draw.counters.fragment_shader_invocations;
+                    work.covering += changes(&draw.counters);
+                }
+            }
         }
         (work.shaded != 0).then_some(work)
     }

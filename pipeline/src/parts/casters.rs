@@ -1,24 +1,27 @@
 //! The casters of a scene, examined once for all its lights.
 
-use crate::geometry::caster::{Caster, CasterPolicy, Counting, UnknownPolicy};
+use crate::geometry::caster::{Caster, CasterPolicy, Counting};
 use crate::geometry::silhouette::{Orientation, Silhouette, light_facing};
-use crate::technique::{ParamInfo, Params, TechniqueError};
+use crate::technique::{Choice, Param, TechniqueError};
 use crate::world::light::HardLight;
 use crate::world::scene::{Object, Scene};
 
-pub(crate) const OPEN_CASTERS: ParamInfo = ParamInfo {
-    name: "open-casters",
-    default: "refuse",
-    valid: "refuse|generalised",
-    summary: "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
-};
+impl Choice for CasterPolicy {
+    const NAMES: &'static [&'static str] = &CasterPolicy::NAMES;
+    const ALL: &'static [Self] = &[Self::RequireClosed, Self::Generalised];
+}
 
-pub(crate) const SKIP: ParamInfo = ParamInfo {
-    name: "skip",
-    default: "on",
-    valid: "on|off",
-    summary: "leave out casters whose volume is outside the view; same bits",
-};
+pub(crate) const OPEN_CASTERS: Param<CasterPolicy> = Param::choice(
+    "open-casters",
+    "refuse",
+    "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
+);
+
+pub(crate) const SKIP: Param<bool> = Param::switch(
+    "skip",
+    true,
+    "leave out casters whose volume is outside the view; same bits",
+);
 
 /// An object that casts shadows.
 pub(crate) struct Examined<'a> {
@@ -28,22 +31,14 @@ pub(crate) struct Examined<'a> {
     pub(crate) caster: Caster,
 }
 
-/// All casters of the scene, for `technique`, which has [`OPEN_CASTERS`].
+/// All casters of the scene.
 ///
 /// # Errors
 /// A caster is not closed and must be.
-pub(crate) fn examine<'a>(
-    technique: &'static str,
-    scene: &'a Scene,
-    params: &Params,
-) -> Result<Vec<Examined<'a>>, TechniqueError> {
-    let bad = |UnknownPolicy(value)| TechniqueError::BadValue {
-        technique,
-        key: OPEN_CASTERS.name,
-        value,
-        valid: OPEN_CASTERS.valid,
-    };
-    let policy: CasterPolicy = params.get(OPEN_CASTERS.name).parse().map_err(bad)?;
+pub(crate) fn examine(
+    scene: &Scene,
+    policy: CasterPolicy,
+) -> Result<Vec<Examined<'_>>, TechniqueError> {
     let objects = scene.objects.iter().enumerate();
     objects
         .filter(|(_, o)| o.casts && !o.mesh.triangles().is_empty())

@@ -20,20 +20,17 @@ use gnomon_shaders::surface::FacetValue;
 use super::passes::{SceneDraws, Targets};
 use super::visibility::{VisibilityTexture, attachment};
 use crate::geometry::area_light::AreaLight;
-use crate::technique::{ParamInfo, Params, TechniqueError};
+use crate::technique::{Param, TechniqueError};
 use crate::world::light::{HardLight, Light, LightShape};
 
-pub(crate) const HORIZON: ParamInfo = ParamInfo {
-    name: "horizon",
-    default: "off",
-    valid: "on|off",
-    summary: "limit what a caster's facet sees to the light before its plane; not in the papers",
-};
+pub(crate) const HORIZON: Param<bool> = Param::switch(
+    "horizon",
+    false,
+    "limit what a caster's facet sees to the light before its plane; not in the papers",
+);
 
 /// A light of which facets see what is before their plane.
 pub(crate) enum Horizon {
-    /// Nobody asked.
-    Off,
     /// A share of it.
     Area(AreaLight),
     /// All or nothing.
@@ -41,21 +38,17 @@ pub(crate) enum Horizon {
 }
 
 impl Horizon {
-    /// Of light number `number`, as `params` ask.
+    /// Of light number `number`.
     ///
     /// # Errors
     /// The light is a sphere, whose share before a plane differs over a facet, or has an
     /// image, whose colours do not lie alike before it.
-    pub(crate) fn wanted(
+    pub(crate) fn of(
         technique: &'static str,
         number: usize,
         light: &Light,
         has_image: bool,
-        params: &Params,
     ) -> Result<Self, TechniqueError> {
-        if params.get(HORIZON.name) != "on" {
-            return Ok(Self::Off);
-        }
         let refused = |why: String| TechniqueError::UnsuitableLight {
             technique,
             light: number,
@@ -79,7 +72,7 @@ impl Horizon {
         }
     }
 
-    /// Limits `visibility` of the light; `None` where nobody asked or no facet needs it.
+    /// Limits `visibility` of the light; `None` where no facet needs it.
     pub(crate) fn pass(
         &self,
         label: String,
@@ -87,9 +80,6 @@ impl Horizon {
         targets: &Targets,
         visibility: VisibilityTexture,
     ) -> Option<RenderPass> {
-        if matches!(self, Self::Off) {
-            return None;
-        }
         let view = &draws.view;
         let share = |corners: [DVec3; 3]| {
             let [a, b, c] = corners;
@@ -120,7 +110,6 @@ impl Horizon {
     fn before(&self, point: DVec3, normal: DVec3) -> Option<f64> {
         let height = |p: DVec3| normal.dot(p - point);
         let share = match self {
-            Self::Off => 1.0,
             Self::Hard(light) if normal.dot(light.towards_from(point)) > 0.0 => 1.0,
             Self::Hard(_) => 0.0,
             Self::Area(AreaLight::Polygon { corners, .. }) => polygon_before(corners, height),

@@ -19,6 +19,7 @@ use std::str::FromStr;
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::technique::Choice;
 use crate::truth::oracle::area::emitter::Emitter;
 use crate::truth::oracle::sampled::{jitter, on_light};
 use crate::world::error::LightError;
@@ -64,6 +65,11 @@ impl Pattern {
             (f64::from(j) + inside[1]) / n,
         ]
     }
+}
+
+impl Choice for Pattern {
+    const NAMES: &'static [&'static str] = &Pattern::NAMES;
+    const ALL: &'static [Self] = &[Self::Grid, Self::Stratified, Self::RotatedGrid];
 }
 
 /// A pattern that there is not.

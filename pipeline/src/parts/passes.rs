@@ -14,20 +14,19 @@ use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
 use gnomon_shaders::surface::{AmbientWithPosition, Constant, Lambert, Phong};
 use gnomon_shaders::transform::{Facets, Points, Surfaces};
 
+use super::frame_settings::{FrameSettings, Shading};
 use super::surface_draw::SurfaceDraw;
 pub(crate) use super::surface_draw::{clamped, index_buffer};
-pub(crate) use super::targets::{
-    COLOR_FORMAT, DEPTH_FORMAT, LIGHT, SHADING, Targets, label, lights,
-};
-pub(crate) use super::view::View;
+pub use super::targets::{Targets, label};
+pub use super::view::View;
 use super::visibility::{Positions, VisibilityTexture, attachment, binding};
-use crate::technique::Params;
+use crate::technique::VisibilityOutput;
 use crate::world::mesh::narrow;
 use crate::world::scene::{Material, Scene};
 
 /// Where a lit pass adds light, and how much of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum LitTest {
+pub enum LitTest {
     /// At every surface.
     Everywhere,
     /// Where the stencil is 0; objects that take no shadow set it to 0 first.
@@ -37,17 +36,29 @@ pub(crate) enum LitTest {
     Visibility(VisibilityTexture),
 }
 
+impl LitTest {
+    /// Where a frame finds the visibility of the last light lit so.
+    pub fn output(self) -> VisibilityOutput {
+        match self {
+            Self::Everywhere => VisibilityOutput::Full,
+            Self::StencilZero => VisibilityOutput::StencilZero,
+            Self::Visibility(texture) => texture.output(),
+        }
+    }
+}
+
 /// All objects of a scene, ready to draw in any pass.
-pub(crate) struct SceneDraws<'a> {
+pub struct SceneDraws<'a> {
     scene: &'a Scene,
     /// The camera that all passes share.
-    pub(crate) view: View,
+    pub view: View,
     surfaces: Vec<SurfaceDraw<'a>>,
     highlights: bool,
 }
 
 impl<'a> SceneDraws<'a> {
-    pub(crate) fn new(scene: &'a Scene, size: [u32; 2], params: &Params) -> Self {
+    /// Of `scene` in a picture of `size`.
+    pub fn new(scene: &'a Scene, size: [u32; 2], settings: &FrameSettings) -> Self {
         let view = View::new(&scene.camera, size);
         let drawn = scene
             .objects
@@ -59,12 +70,12 @@ impl<'a> SceneDraws<'a> {
                 .flat_map(|o| SurfaceDraw::of_object(scene, &view, o))
                 .collect(),
             view,
-            highlights: params.get(SHADING.name) != "lambert",
+            highlights: settings.shading == Shading::Phong,
         }
     }
 
     /// Clears all attachments, then draws ambient light and depth.
-    pub(crate) fn ambient_pass(&self, targets: &Targets) -> RenderPass {
+    pub fn ambient_pass(&self, targets: &Targets) -> RenderPass {
         let [r, g, b] = self.scene.background;
         let ambient = self.scene.ambient;
         let draw = |s: &SurfaceDraw<'_>| {
@@ -87,7 +98,7 @@ impl<'a> SceneDraws<'a> {
 
     /// The same, and writes where each pixel's surface is into `positions`: 16
     /// bytes a fragment, counted as colour traffic of attachment 1.
-    pub(crate) fn ambient_pass_with_positions(
+    pub fn ambient_pass_with_positions(
         &self,
         targets: &Targets,
         positions: &Positions,
@@ -119,7 +130,7 @@ impl<'a> SceneDraws<'a> {
     }
 
     /// Adds the light of light `light` to what the ambient pass drew.
-    pub(crate) fn lit_pass(
+    pub fn lit_pass(
         &self,
         targets: &Targets,
         light: usize,
@@ -152,7 +163,7 @@ impl<'a> SceneDraws<'a> {
 
     /// Draws of the objects that take no shadow, where they are seen, in one
     /// colour; for a pass with one colour attachment and the depth of the frame.
-    pub(crate) fn not_receiving(&self, label: &str, colour: [f32; 4]) -> Vec<Draw> {
+    pub fn not_receiving(&self, label: &str, colour: [f32; 4]) -> Vec<Draw> {
         let surfaces = self.surfaces.iter().filter(|s| !s.object.receives);
         let draw = |s: &SurfaceDraw<'_>| {
             s.draw(RenderPipeline {
@@ -170,7 +181,7 @@ impl<'a> SceneDraws<'a> {
     /// Draws of the facets that cast and take shadow and to which `flat` gives
     /// numbers, where they are seen; for a pass with one colour attachment and the
     /// depth of the frame.
-    pub(crate) fn shadowed_facets(
+    pub fn shadowed_facets(
         &self,
         label: &str,
         (fragment, target): (FragmentStage, ColorTargetState),

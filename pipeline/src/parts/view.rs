@@ -17,8 +17,9 @@ use crate::world::mesh::{narrow, widen};
 use crate::world::scene::Camera;
 
 /// The camera's transform, and the origin that it is relative to.
-pub(crate) struct View {
-    pub(crate) clip_from_world: ClipFromWorld,
+pub struct View {
+    /// From world space relative to the origin.
+    pub clip_from_world: ClipFromWorld,
     /// In world space; world-space inputs of shaders are relative to it.
     origin: DVec3,
     camera: Camera,
@@ -26,7 +27,8 @@ pub(crate) struct View {
 }
 
 impl View {
-    pub(crate) fn new(camera: &Camera, [width, height]: [u32; 2]) -> Self {
+    /// Of `camera` for a picture of that width and height.
+    pub fn new(camera: &Camera, [width, height]: [u32; 2]) -> Self {
         let origin = origin(camera);
         let moved = Camera {
             eye: camera.eye - origin,
@@ -43,21 +45,22 @@ impl View {
     }
 
     /// The camera, world space.
-    pub(crate) fn camera(&self) -> &Camera {
+    pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
     /// Width and height of the picture.
-    pub(crate) fn size(&self) -> [u32; 2] {
+    pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// The eye relative to the origin.
-    pub(crate) fn eye(&self) -> DVec3 {
+    pub fn eye(&self) -> DVec3 {
         self.relative(self.camera.eye)
     }
 
-    pub(crate) fn pixel_rays(&self) -> PixelRays {
+    /// Rays through pixels, relative to the origin.
+    pub fn pixel_rays(&self) -> PixelRays {
         let [width, height] = self.size;
         let rays = self.camera.eye_rays(width, height);
         let first = rays.direction(0.0, 0.0);
@@ -72,22 +75,22 @@ impl View {
     }
 
     /// A world-space position relative to the origin, as shaders have it.
-    pub(crate) fn relative(&self, p: DVec3) -> DVec3 {
+    pub fn relative(&self, p: DVec3) -> DVec3 {
         p - self.origin
     }
 
     /// A position relative to the origin, in world space.
-    pub(crate) fn absolute(&self, p: DVec3) -> DVec3 {
+    pub fn absolute(&self, p: DVec3) -> DVec3 {
         p + self.origin
     }
 
     /// A world-space position relative to the origin.
-    pub(crate) fn point(&self, p: [f32; 3]) -> [f32; 3] {
+    pub fn point(&self, p: [f32; 3]) -> [f32; 3] {
         narrow(widen(p) - self.origin)
     }
 
     /// The light as a homogeneous point relative to the origin.
-    pub(crate) fn light(&self, light: HardLight) -> [f32; 4] {
+    pub fn light(&self, light: HardLight) -> [f32; 4] {
         let ([x, y, z], w) = match light {
             HardLight::Point(p) => (narrow(p - self.origin), 1.0),
             HardLight::Directional(towards) => (narrow(towards), 0.0),

@@ -23,12 +23,17 @@ use crate::technique::{TechniqueError, VisibilityOutput};
 /// World-space positions of what pixels show, relative to [`View`]'s origin: an
 /// `Rgba32Float` image; w is 1 where shadow may fall, else 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Positions {
-    pub(crate) texture: TextureId,
+pub struct Positions {
+    /// The image.
+    pub texture: TextureId,
 }
 
 impl Positions {
-    pub(crate) fn create(
+    /// Creates it for a picture of that width and height.
+    ///
+    /// # Errors
+    /// The GPU refuses the texture.
+    pub fn create(
         [width, height]: [u32; 2],
         recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
@@ -41,17 +46,20 @@ impl Positions {
 
 /// Visibility of a light: `texel · scale + offset`, limited to 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct VisibilityTexture {
-    pub(crate) texture: TextureId,
-    pub(crate) scale: f32,
-    pub(crate) offset: f32,
+pub struct VisibilityTexture {
+    /// The texture, of the picture's size.
+    pub texture: TextureId,
+    /// Factor of its texels.
+    pub scale: f32,
+    /// Added to the product.
+    pub offset: f32,
     /// Red, green and blue apart; else red for all.
-    pub(crate) coloured: bool,
+    pub coloured: bool,
 }
 
 impl VisibilityTexture {
     /// A texture whose red is the visibility.
-    pub(crate) fn red(texture: TextureId) -> Self {
+    pub fn red(texture: TextureId) -> Self {
         Self {
             texture,
             scale: 1.0,
@@ -61,7 +69,7 @@ impl VisibilityTexture {
     }
 
     /// Red, for the frame's outputs.
-    pub(crate) fn output(&self) -> VisibilityOutput {
+    pub fn output(&self) -> VisibilityOutput {
         VisibilityOutput::Red {
             texture: self.texture,
             scale: self.scale,
@@ -69,7 +77,8 @@ impl VisibilityTexture {
         }
     }
 
-    pub(crate) fn shadowed<S>(&self, surface: S) -> Shadowed<S> {
+    /// A surface shader dimmed by it.
+    pub fn shadowed<S>(&self, surface: S) -> Shadowed<S> {
         Shadowed {
             surface,
             scale: self.scale,
@@ -80,7 +89,7 @@ impl VisibilityTexture {
 }
 
 /// All of a texture's first image.
-pub(crate) fn attachment(texture: TextureId, load: LoadOp<[f32; 4]>) -> ColorAttachment {
+pub fn attachment(texture: TextureId, load: LoadOp<[f32; 4]>) -> ColorAttachment {
     ColorAttachment {
         texture,
         subresource: Subresource::default(),
@@ -90,7 +99,7 @@ pub(crate) fn attachment(texture: TextureId, load: LoadOp<[f32; 4]>) -> ColorAtt
 }
 
 /// A texture for fetches of single texels.
-pub(crate) fn binding(texture: TextureId) -> TextureBinding {
+pub fn binding(texture: TextureId) -> TextureBinding {
     TextureBinding {
         texture,
         sampler: Sampler::default(),
@@ -98,7 +107,7 @@ pub(crate) fn binding(texture: TextureId) -> TextureBinding {
 }
 
 /// One triangle over all pixels; for [`gnomon_shaders::transform::FullScreen`].
-pub(crate) fn full_screen(pipeline: RenderPipeline, textures: Vec<TextureBinding>) -> Draw {
+pub fn full_screen(pipeline: RenderPipeline, textures: Vec<TextureBinding>) -> Draw {
     let label = pipeline.label.clone();
     Draw {
         textures,
@@ -109,7 +118,7 @@ pub(crate) fn full_screen(pipeline: RenderPipeline, textures: Vec<TextureBinding
 /// Vertices `(p, 1)` and `(direction, 0)` of world space as a buffer for
 /// [`gnomon_shaders::transform::HomogeneousPoints`]: points relative to the
 /// view's origin, rounded once.
-pub(crate) fn homogeneous(view: &View, vertices: &[DVec4]) -> VertexBuffer {
+pub fn homogeneous(view: &View, vertices: &[DVec4]) -> VertexBuffer {
     let moved = |v: &DVec4| {
         let p = if v.w == 0.0 {
             v.truncate()
@@ -126,7 +135,7 @@ pub(crate) fn homogeneous(view: &View, vertices: &[DVec4]) -> VertexBuffer {
 
 /// Triangles of homogeneous vertices: a wedge, half of one, or a quad. Each has
 /// uniforms of its own and so is a draw of its own.
-pub(crate) fn homogeneous_draw(
+pub fn homogeneous_draw(
     label: &str,
     pipeline: RenderPipeline,
     vertices: &Arc<VertexBuffer>,

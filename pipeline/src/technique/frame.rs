@@ -2,6 +2,7 @@
 
 use gnomon_raster::{Recording, TextureId};
 
+use super::pass::Roles;
 use crate::world::scene::SceneWarning;
 
 /// Something amiss that did not stop the work: code, count, message.
@@ -14,6 +15,8 @@ pub struct Frame {
     /// list may be submitted any number of times. Its outputs are named `color`,
     /// `depth-stencil` and, where a texture holds it, `visibility`.
     pub recording: Recording,
+    /// What the passes of its list are for, one role each.
+    pub roles: Roles,
     /// Where the results are afterwards.
     pub outputs: Outputs,
     /// What was found amiss on the way.

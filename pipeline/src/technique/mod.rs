@@ -3,23 +3,35 @@
 //! A technique is a pure function from a scene and parameters to a [`Frame`]:
 //! textures and commands for the emulated GPU, and the names of their outputs. It
 //! touches no GPU, thread, clock or file; [`crate::measure::render`] runs it.
-//!
-//! To add one, write its file in `techniques/` and add one line to
-//! [`techniques`]; command line, suites and tables pick it up from there.
 
+mod capabilities;
+mod condition;
+mod domain;
 mod frame;
+mod param;
 mod params;
+mod pass;
+mod wedges;
 
 use thiserror::Error;
 
+pub use capabilities::{Capabilities, LightKinds, ShadowKind, Source, WedgeUse};
+pub use condition::{Condition, LightFact};
+pub use domain::{Decimals, Domain, Value, Whole};
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
-pub use params::{ParamInfo, Params};
+pub use param::{Choice, Nested, Number, Param, ParamInfo, Setting, count, join};
+pub use params::{Params, SETTING_WITHOUT_EFFECT};
+pub use pass::{DrawRole, Pass, PassRole, Roles, apart};
+pub use wedges::{SceneWedges, WedgeKind};
 
 use crate::geometry::caster::RefusedCaster;
 use crate::world::error::LightError;
 use crate::world::scene::Scene;
 
 /// A way to shade a scene with shadows.
+///
+/// It is `Sync` and has no state but what it is made of, so that the list of all of
+/// them is plain data; [`crate::techniques::Registry`] takes those of other crates.
 pub trait Technique: Sync {
     /// Name on the command line, kebab-case.
     fn name(&self) -> &'static str;
@@ -27,8 +39,12 @@ pub trait Technique: Sync {
     /// One line for people.
     fn summary(&self) -> &'static str;
 
-    /// Its parameters, in the order in which they are listed.
+    /// Its parameters, in the order in which they are listed; see
+    /// [`param_list!`](crate::param_list).
     fn params(&self) -> &'static [ParamInfo];
+
+    /// What it can do and what it needs.
+    fn capabilities(&self) -> Capabilities;
 
     /// The frame of `scene` at `size` (width, height).
     ///
@@ -40,6 +56,19 @@ pub trait Technique: Sync {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError>;
+
+    /// The penumbra wedges of its frame, from the same casters, silhouettes and
+    /// constructions, without drawing; `None` for techniques without any.
+    ///
+    /// # Errors
+    /// As the frame: a caster that is not closed, or a light that it is not made for.
+    fn wedges(
+        &self,
+        _scene: &Scene,
+        _params: &Params,
+    ) -> Result<Option<SceneWedges>, TechniqueError> {
+        Ok(None)
+    }
 }
 
 /// Why a technique gives no frame.
@@ -87,7 +116,27 @@ pub enum TechniqueError {
         /// The value given.
         value: String,
         /// The values taken.
-        valid: &'static str,
+        valid: String,
+    },
+    /// Two settings of which one rules the other out.
+    #[error("technique '{technique}' cannot have both {}={} and {}={}: {why}", .settings[0].0, .settings[0].1, .settings[1].0, .settings[1].1)]
+    Contradiction {
+        /// The technique.
+        technique: &'static str,
+        /// Keys and values.
+        settings: [(&'static str, String); 2],
+        /// What each would need.
+        why: &'static str,
+    },
+    /// A frame that does not say what its passes are for.
+    #[error("technique '{technique}' gives {passes} passes and the roles of {roles}; each has one")]
+    MissingRoles {
+        /// The technique.
+        technique: &'static str,
+        /// Passes of the frame.
+        passes: usize,
+        /// Roles of the frame.
+        roles: usize,
     },
     /// A light that the scene does not have.
     #[error("light {given} was asked for; the scene has {count}, numbered from 0")]

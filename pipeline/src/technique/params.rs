@@ -1,51 +1,34 @@
-//! Parameters of techniques, given as `key=value`.
+//! The values of a technique's parameters, given as `key=value`.
 
-use super::{Technique, TechniqueError};
-
-/// A parameter of a technique.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ParamInfo {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// Value where none is given.
-    pub default: &'static str,
-    /// Values it takes, separated by `|`; `N` stands for any whole number from 0,
-    /// `N+N` for several, `X` for any decimal number from 0, `TECHNIQUE` for a technique's name and
-    /// settings, which it judges itself.
-    pub valid: &'static str,
-    /// One line for people.
-    pub summary: &'static str,
-}
-
-impl ParamInfo {
-    fn takes(&self, value: &str) -> bool {
-        let is_number = || !value.is_empty() && value.parse::<u32>().is_ok();
-        let is_decimal = || {
-            value
-                .parse::<f64>()
-                .is_ok_and(|x| x.is_finite() && x >= 0.0)
-        };
-        self.valid.split('|').any(|v| match v {
-            "N" => is_number(),
-            "X" => is_decimal(),
-            "N+N" => value.split('+').all(|n| n.parse::<u32>().is_ok()),
-            "TECHNIQUE" => !value.is_empty(),
-            word => word == value,
-        })
-    }
-}
+use super::param::{Param, ParamInfo, Setting};
+use super::{Technique, TechniqueError, Warning};
+use crate::world::scene::Scene;
 
 /// Checked values of all parameters of a technique.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    values: Vec<(&'static str, String)>,
+    technique: &'static str,
+    values: Vec<ParamValue>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct ParamValue {
+    info: ParamInfo,
+    text: String,
+    /// Asked for, be it the default.
+    given: bool,
 }
 
 impl Params {
     /// Every parameter at its default.
     pub fn defaults(technique: &dyn Technique) -> Self {
-        let default = |p: &ParamInfo| (p.name, p.default.to_owned());
+        let default = |info: &ParamInfo| ParamValue {
+            info: *info,
+            text: info.default.to_string(),
+            given: false,
+        };
         Self {
+            technique: technique.name(),
             values: technique.params().iter().map(default).collect(),
         }
     }
@@ -67,50 +50,119 @@ impl Params {
                     given: given.to_owned(),
                 });
             };
-            params.set(technique, key.trim(), value.trim())?;
+            params.set(key.trim(), value.trim())?;
         }
         Ok(params)
     }
 
-    fn set(
-        &mut self,
-        technique: &dyn Technique,
-        key: &str,
-        value: &str,
-    ) -> Result<(), TechniqueError> {
-        let known = technique.params();
-        let Some(at) = known.iter().position(|p| p.name == key) else {
-            let names: Vec<&'static str> = known.iter().map(|p| p.name).collect();
-            return Err(TechniqueError::UnknownParameter {
-                technique: technique.name(),
-                key: key.to_owned(),
-                nearest: crate::world::error::nearest(key, &names),
-                known: names,
-            });
+    /// Name of the technique whose parameters these are.
+    pub fn technique(&self) -> &'static str {
+        self.technique
+    }
+
+    fn set(&mut self, key: &str, text: &str) -> Result<(), TechniqueError> {
+        let technique = self.technique;
+        let Some(value) = self.values.iter_mut().find(|v| v.info.name == key) else {
+            return Err(self.unknown(key));
         };
-        if !known[at].takes(value) {
-            return Err(TechniqueError::BadValue {
-                technique: technique.name(),
-                key: known[at].name,
-                value: value.to_owned(),
-                valid: known[at].valid,
-            });
+        if !value.info.domain.takes(text) {
+            return Err(bad_value(technique, &value.info, text));
         }
-        self.values[at].1 = value.to_owned();
+        value.text = text.to_owned();
+        value.given = true;
         Ok(())
     }
 
-    /// Value of parameter `name`; empty for one that the technique does not have.
-    pub fn get(&self, name: &str) -> &str {
-        self.values
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map_or("", |(_, v)| v)
+    /// Another technique's value of a parameter that both have, where nothing else was
+    /// asked for; what is not one of its values here is left.
+    pub(crate) fn hand_down(&mut self, key: &str, text: &str) {
+        let value = self.values.iter_mut().find(|v| v.info.name == key);
+        if let Some(value) = value.filter(|v| !v.given && v.info.domain.takes(text)) {
+            value.text = text.to_owned();
+        }
+    }
+
+    fn unknown(&self, key: &str) -> TechniqueError {
+        let names: Vec<&'static str> = self.values.iter().map(|v| v.info.name).collect();
+        TechniqueError::UnknownParameter {
+            technique: self.technique,
+            key: key.to_owned(),
+            nearest: crate::world::error::nearest(key, &names),
+            known: names,
+        }
+    }
+
+    fn find(&self, name: &str) -> Option<&ParamValue> {
+        self.values.iter().find(|v| v.info.name == name)
+    }
+
+    /// Value of a parameter.
+    ///
+    /// # Errors
+    /// The technique does not list the parameter, or its domain takes what its type
+    /// does not: both are faults of the technique.
+    pub fn get<T: Setting>(&self, param: &Param<T>) -> Result<T, TechniqueError> {
+        let name = param.info.name;
+        let value = self.find(name).ok_or_else(|| self.unknown(name))?;
+        T::read(&value.text).ok_or_else(|| bad_value(self.technique, &value.info, &value.text))
+    }
+
+    /// Whether a parameter was asked for, be it with its default.
+    pub fn is_given(&self, name: &str) -> bool {
+        self.find(name).is_some_and(|v| v.given)
+    }
+
+    /// Value of the parameter called `name` as text; `None` where there is none.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.find(name).map(|v| v.text.as_str())
+    }
+
+    /// Whether the parameter called `name` has a value that means `text`.
+    pub(super) fn has_value(&self, name: &str, text: &str) -> bool {
+        self.find(name)
+            .is_some_and(|v| v.info.domain.same(&v.text, text))
     }
 
     /// Names and values, in the technique's order.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        self.values.iter().map(|(n, v)| (*n, v.as_str()))
+        self.values.iter().map(|v| (v.info.name, v.text.as_str()))
+    }
+
+    /// A warning for each setting that was asked for and changes nothing in `scene`
+    /// together with the others.
+    pub fn without_effect(&self, scene: &Scene) -> Vec<Warning> {
+        let given = self.values.iter().filter(|v| v.given);
+        given
+            .filter(|v| !v.info.applies.holds(self, scene))
+            .map(|v| self.warning(v, &format!("it applies when {}", v.info.applies)))
+            .collect()
+    }
+
+    /// The warning that a parameter was asked for in vain, if it was asked for.
+    pub(crate) fn in_vain(&self, name: &str, why: &str) -> Option<Warning> {
+        let value = self.find(name).filter(|v| v.given)?;
+        Some(self.warning(value, why))
+    }
+
+    fn warning(&self, value: &ParamValue, why: &str) -> Warning {
+        let (name, text, technique) = (value.info.name, &value.text, self.technique);
+        Warning {
+            code: SETTING_WITHOUT_EFFECT,
+            count: 1,
+            message: format!("{technique}: {name}={text} has no effect here; {why}"),
+        }
+    }
+}
+
+/// Code of warnings of settings that change nothing.
+pub const SETTING_WITHOUT_EFFECT: &str = "setting-without-effect";
+
+fn bad_value(technique: &'static str, info: &ParamInfo, value: &str) -> TechniqueError {
+    TechniqueError::BadValue {
+        technique,
+        key: info.name,
+        value: value.to_owned(),
+        valid: info.domain.to_string(),
     }
 }
 
@@ -126,19 +178,30 @@ mod tests {
     #[test]
     fn assignments_change_defaults() {
         let params = parse(&["method=zpass", "light = 3", "method=zfail"]).unwrap();
-        assert_eq!((params.get("method"), params.get("light")), ("zfail", "3"));
-        assert_eq!(
-            (params.get("open-casters"), params.get("nonsense")),
-            ("refuse", "")
-        );
+        assert_eq!(params.text("method"), Some("zfail"));
+        assert_eq!(params.text("light"), Some("3"));
+        assert_eq!(params.text("open-casters"), Some("refuse"));
+        assert_eq!(params.text("nonsense"), None);
+        assert!(params.is_given("light") && !params.is_given("open-casters"));
     }
 
     #[test]
     fn errors_say_what_is_valid() {
         let message = |a: &str| parse(&[a]).unwrap_err();
         assert!(message("method=zz").contains("auto|zpass|zfail"));
-        assert!(message("light=-1").contains("all|N"));
+        assert!(message("light=-1").contains("all, or a whole number from 0"));
         assert!(message("methd=auto").contains("did you mean 'method'"));
         assert!(message("zfail").contains("key=value"));
+    }
+
+    #[test]
+    fn parameters_of_other_techniques_are_not_read() {
+        let params = parse(&[]).unwrap();
+        let taps = Param::<u32>::whole("taps", 4, [1, 64], "");
+        let refused = params.get(&taps).unwrap_err().to_string();
+        assert!(
+            refused.contains("'shadow-volumes' has no parameter 'taps'"),
+            "{refused}"
+        );
     }
 }

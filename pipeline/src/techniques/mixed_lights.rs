@@ -15,49 +15,96 @@ use gnomon_raster::{LoadOp, RenderPass, RenderPipeline, TextureId};
 use gnomon_shaders::soft_volumes::Resolve;
 use gnomon_shaders::transform::FullScreen;
 
+use crate::param_list;
 use crate::parts::casters::SKIP;
-use crate::parts::passes;
+use crate::parts::frame_settings::FrameSettings;
 use crate::parts::visibility::{attachment, binding, full_screen};
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::technique::{
+    Capabilities, Condition, Frame, Nested, Param, ParamInfo, Params, PassRole, ShadowKind, Source,
+    Technique, TechniqueError, Warning,
+};
 use crate::techniques::find;
 use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct MixedLights;
 
-const BRIGHTEST: ParamInfo = ParamInfo {
-    name: "brightest",
-    default: "8",
-    valid: "N",
-    summary: "how many lights the first technique draws; visibility is that of the brightest",
-};
+const BRIGHTEST: Param<u32> = Param::<u32>::whole(
+    "brightest",
+    8,
+    [0, u32::MAX as u64],
+    "how many lights the first technique draws; visibility is that of the brightest",
+)
+.unit("lights")
+.when(Condition::Is("choose", &["brightest"]));
 
-const CHOOSE: ParamInfo = ParamInfo {
-    name: "choose",
-    default: "brightest",
-    valid: "brightest|N+N",
-    summary: "lights of the first technique: the brightest, or those of these numbers; visibility is that of the first of them",
-};
+const CHOOSE: Param<Option<Vec<usize>>> = Param::list_or(
+    &["brightest"],
+    "choose",
+    "lights of the first technique: the brightest, or those of these numbers; visibility is that of the first of them",
+);
 
-const FIRST: ParamInfo = ParamInfo {
-    name: "first",
-    default: "soft-shadow-volumes",
-    valid: "TECHNIQUE",
-    summary: "technique of the brightest lights, with settings behind colons: NAME:KEY=VALUE:...",
-};
+const FIRST: Param<Nested> = Param::technique(
+    "first",
+    "soft-shadow-volumes",
+    "technique of the brightest lights, with settings behind colons: NAME:KEY=VALUE:...",
+);
 
-const REST: ParamInfo = ParamInfo {
-    name: "rest",
-    default: "shadow-volumes",
-    valid: "TECHNIQUE",
-    summary: "technique of the other lights, likewise",
-};
+const REST: Param<Nested> = Param::technique(
+    "rest",
+    "shadow-volumes",
+    "technique of the other lights, likewise",
+);
 
 /// Parameters that both techniques get as they are, where they have them.
 const SHARED: [&str; 4] = ["skip", "shading", "color-format", "depth-format"];
 
 /// Luminance of linear Rec. 709 RGB.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+/// What parameters decide.
+struct MixedSettings {
+    brightest: usize,
+    /// Numbers of the first technique's lights; `None` for the brightest.
+    chosen: Option<Vec<usize>>,
+    first: Inner,
+    rest: Inner,
+    frame: FrameSettings,
+}
+
+impl MixedSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            brightest: params.get(&BRIGHTEST)? as usize,
+            chosen: params.get(&CHOOSE)?,
+            first: Inner::read(&FIRST, params)?,
+            rest: Inner::read(&REST, params)?,
+            frame: FrameSettings::read(params)?,
+        })
+    }
+
+    /// The first technique's lights, and the others.
+    fn shared_out(&self, scene: &Scene) -> Result<(Vec<usize>, Vec<usize>), TechniqueError> {
+        let lights = by_brightness(scene, self.frame.lights(scene)?);
+        let Some(asked) = &self.chosen else {
+            let (bright, others) = lights.split_at(self.brightest.min(lights.len()));
+            return Ok((bright.to_vec(), others.to_vec()));
+        };
+        let count = scene.lights.len();
+        let mut chosen = Vec::new();
+        for &given in asked {
+            if given >= count {
+                return Err(TechniqueError::NoSuchLight { given, count });
+            }
+            if lights.contains(&given) && !chosen.contains(&given) {
+                chosen.push(given);
+            }
+        }
+        let mut others = lights;
+        others.retain(|l| !chosen.contains(l));
+        Ok((chosen, others))
+    }
+}
 
 impl Technique for MixedLights {
     fn name(&self) -> &'static str {
@@ -69,18 +116,25 @@ impl Technique for MixedLights {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            BRIGHTEST,
-            CHOOSE,
-            FIRST,
-            REST,
-            passes::LIGHT,
-            SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[
+                BRIGHTEST.info,
+                CHOOSE.info,
+                FIRST.info,
+                REST.info,
+                SKIP.info,
+            ],
+            FrameSettings::PARAMS
+        )
+    }
+
+    /// Those of any technique: what it refuses its parts refuse.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            shadows: ShadowKind::Soft,
+            source: Source::Techniques,
+            ..Capabilities::UNSHADOWED
+        }
     }
 
     fn frame(
@@ -89,65 +143,35 @@ impl Technique for MixedLights {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let inner = [FIRST, REST].map(|p| Inner::new(self.name(), p, params));
-        let [first, rest] = inner;
-        let (first, rest) = (first?, rest?);
-        let lights = by_brightness(scene, passes::lights(scene, params)?);
-        let (bright, others) = self.shared_out(scene, lights, params)?;
-        let dark = Scene {
-            ambient: [0.0; 3],
-            background: [0.0; 3],
-            ..scene.clone()
-        };
-        match (&bright[..], &others[..]) {
-            (bright, []) => first.frame(scene, bright, size),
-            ([], others) => rest.frame(scene, others, size),
+        let settings = MixedSettings::read(params)?;
+        let (bright, others) = settings.shared_out(scene)?;
+        let (first, rest) = (&settings.first, &settings.rest);
+        let mut frame = match (&bright[..], &others[..]) {
+            (bright, []) => first.frame(scene, bright, size)?,
+            ([], others) => rest.frame(scene, others, size)?,
             (bright, others) => {
+                let dark = Scene {
+                    ambient: [0.0; 3],
+                    background: [0.0; 3],
+                    ..scene.clone()
+                };
                 let frame = first.frame(scene, bright, size)?;
-                let second = rest.frame(&dark, others, size)?;
-                Ok(joined(frame, second))
+                joined(frame, rest.frame(&dark, others, size)?)
             }
-        }
+        };
+        frame.warnings.extend(unused(params, &bright, &others));
+        Ok(frame)
     }
 }
 
-impl MixedLights {
-    /// The first technique's lights, and the others.
-    fn shared_out(
-        &self,
-        scene: &Scene,
-        lights: Vec<usize>,
-        params: &Params,
-    ) -> Result<(Vec<usize>, Vec<usize>), TechniqueError> {
-        let given = params.get(CHOOSE.name);
-        if given == CHOOSE.default {
-            let brightest = params.get(BRIGHTEST.name).parse().unwrap_or(usize::MAX);
-            let (bright, others) = lights.split_at(brightest.min(lights.len()));
-            return Ok((bright.to_vec(), others.to_vec()));
-        }
-        let mut chosen = Vec::new();
-        for number in given.split('+') {
-            let number = number.parse().map_err(|_| TechniqueError::BadValue {
-                technique: self.name(),
-                key: CHOOSE.name,
-                value: given.to_owned(),
-                valid: "brightest, or numbers of lights with + between them, such as 0+3",
-            })?;
-            if number >= scene.lights.len() {
-                let count = scene.lights.len();
-                return Err(TechniqueError::NoSuchLight {
-                    given: number,
-                    count,
-                });
-            }
-            if lights.contains(&number) && !chosen.contains(&number) {
-                chosen.push(number);
-            }
-        }
-        let mut others = lights;
-        others.retain(|l| !chosen.contains(l));
-        Ok((chosen, others))
-    }
+/// Warnings of a technique that was asked for and has no lights.
+fn unused(params: &Params, bright: &[usize], others: &[usize]) -> Vec<Warning> {
+    let none = |param: &Param<Nested>, lights: &[usize]| {
+        let warning = params.in_vain(param.info.name, "it has no lights left to draw");
+        warning.filter(|_| lights.is_empty())
+    };
+    let both = [none(&FIRST, bright), none(&REST, others)];
+    both.into_iter().flatten().collect()
 }
 
 /// A technique and its settings.
@@ -157,26 +181,24 @@ struct Inner {
 }
 
 impl Inner {
-    fn new(outer: &'static str, which: ParamInfo, params: &Params) -> Result<Self, TechniqueError> {
-        let given = params.get(which.name);
-        let mut parts = given.split(':');
-        let technique = find(parts.next().unwrap_or_default())?;
-        if technique.name() == outer {
+    fn read(which: &Param<Nested>, outer: &Params) -> Result<Self, TechniqueError> {
+        let given = outer.get(which)?;
+        let technique = find(&given.technique)?;
+        if technique.name() == outer.technique() {
             return Err(TechniqueError::BadValue {
-                technique: outer,
-                key: which.name,
-                value: given.to_owned(),
-                valid: "any technique but mixed-lights",
+                technique: outer.technique(),
+                key: which.info.name,
+                value: given.technique,
+                valid: "any technique but mixed-lights".to_owned(),
             });
         }
-        let has = |key: &str| technique.params().iter().any(|p| p.name == key);
-        let shared = SHARED.iter().filter(|key| has(key));
-        let shared = shared.map(|key| format!("{key}={}", params.get(key)));
-        let all: Vec<String> = shared.chain(parts.map(str::to_owned)).collect();
-        Ok(Self {
-            technique,
-            params: Params::parse(technique, all)?,
-        })
+        let mut params = Params::parse(technique, given.settings)?;
+        for key in SHARED {
+            if let Some(text) = outer.text(key) {
+                params.hand_down(key, text);
+            }
+        }
+        Ok(Self { technique, params })
     }
 
     /// The frame of some lights of `scene`, which keep their numbers in reports.
@@ -192,6 +214,7 @@ impl Inner {
         };
         let frame = self.technique.frame(&part, size, &self.params);
         let mut frame = frame.map_err(|e| numbered(e, lights))?;
+        frame.warnings.extend(self.params.without_effect(&part));
         for caster in &mut frame.casters {
             caster.light = lights[caster.light];
         }
@@ -236,6 +259,8 @@ fn joined(mut frame: Frame, second: Frame) -> Frame {
     let moved = frame.recording.append(rest);
     let add = addition(frame.outputs.color, moved(second.outputs.color));
     frame.recording.list.passes.push(add);
+    frame.roles.append(second.roles);
+    frame.roles.push(PassRole::AddPicture, Vec::new());
     frame.warnings.extend(second.warnings);
     frame.casters.extend(second.casters);
     for mut figure in second.figures {
@@ -379,6 +404,9 @@ mod tests {
         assert!(refused("light=7").contains("light 7"));
         assert!(refused("choose=0+7").contains("light 7"));
         let word = Params::parse(technique, ["choose=0+a"]).unwrap_err();
-        assert!(word.to_string().contains("brightest|N+N"), "{word}");
+        assert!(
+            word.to_string().contains("brightest, or whole numbers"),
+            "{word}"
+        );
     }
 }

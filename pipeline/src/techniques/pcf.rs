@@ -5,29 +5,64 @@
 
 use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps};
 
-use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
-use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Sources};
+use crate::technique::{
+    Capabilities, Condition, Frame, Param, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
+};
 use crate::world::scene::Scene;
+use crate::{choices, param_list};
 
 /// The registry's entry.
 pub(crate) struct Pcf;
 
-const KERNEL: ParamInfo = ParamInfo {
-    name: "kernel",
-    default: "box",
-    valid: "box|bicubic",
-    summary: "the mean of taps x taps texels, or the cubic B-spline over 16",
-};
+choices! {
+    /// What outcomes are filtered by.
+    enum Kernel {
+        /// A mean.
+        Box = "box",
+        /// A cubic B-spline.
+        Bicubic = "bicubic",
+    }
+}
 
-const TAPS: ParamInfo = ParamInfo {
-    name: "taps",
-    default: "4",
-    valid: "N",
-    summary: "texels along a side of the box kernel, 1 to 64",
-};
+const KERNEL: Param<Kernel> = Param::choice(
+    "kernel",
+    Kernel::Box.word(),
+    "the mean of taps x taps texels, or the cubic B-spline over 16",
+);
 
-const MOST_TAPS: u32 = 64;
+const TAPS: Param<u32> =
+    Param::<u32>::whole("taps", 4, [1, 64], "texels along a side of the box kernel")
+        .unit("texels")
+        .when(Condition::Is("kernel", &["box"]));
+
+/// What parameters decide.
+struct PcfSettings {
+    kernel: Kernel,
+    taps: u32,
+    maps: MapSettings,
+    frame: FrameSettings,
+}
+
+impl PcfSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            kernel: params.get(&KERNEL)?,
+            taps: params.get(&TAPS)?,
+            maps: MapSettings::read(params)?,
+            frame: FrameSettings::read(params)?,
+        })
+    }
+
+    /// Width of the kernel in texels.
+    fn width(&self) -> u32 {
+        match self.kernel {
+            Kernel::Box => self.taps,
+            Kernel::Bicubic => 4,
+        }
+    }
+}
 
 impl Technique for Pcf {
     fn name(&self) -> &'static str {
@@ -39,22 +74,15 @@ impl Technique for Pcf {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            KERNEL,
-            TAPS,
-            mapped::MAP_SIZE,
-            mapped::BIAS,
-            mapped::SLOPE_BIAS,
-            mapped::NEAR,
-            mapped::VIEW,
-            mapped::FIT,
-            passes::LIGHT,
-            mapped::SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[KERNEL.info, TAPS.info],
+            MapSettings::PARAMS,
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_light_views(ShadowKind::Hard)
     }
 
     fn frame(
@@ -63,40 +91,27 @@ impl Technique for Pcf {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let taps = taps(self.name(), params)?;
-        let cubic = params.get(KERNEL.name) == "bicubic";
-        let width = if cubic { 4 } else { taps };
+        let settings = PcfSettings::read(params)?;
         // As far as the farthest tap.
         let margin = Margin {
             bias: 0.5,
-            slope: f64::from(width) / 2.0,
+            slope: f64::from(settings.width()) / 2.0,
         };
         let mapped = Mapped {
             name: self.name(),
             scene,
             size,
-            params,
+            frame: settings.frame,
+            maps: settings.maps,
+            horizon: false,
             margin,
         };
         mapped.frame(
             |light| Sources::centre(self.name(), scene, light),
-            |look_up| match cubic {
-                true => look_up.whole(CubicTaps).stage(),
-                false => look_up.whole(BoxTaps(taps)).stage(),
+            |look_up| match settings.kernel {
+                Kernel::Bicubic => look_up.whole(CubicTaps).stage(),
+                Kernel::Box => look_up.whole(BoxTaps(settings.taps)).stage(),
             },
         )
     }
-}
-
-fn taps(technique: &'static str, params: &Params) -> Result<u32, TechniqueError> {
-    let taps = params.get(TAPS.name).parse().unwrap_or(0);
-    if (1..=MOST_TAPS).contains(&taps) {
-        return Ok(taps);
-    }
-    Err(TechniqueError::BadValue {
-        technique,
-        key: TAPS.name,
-        value: params.get(TAPS.name).to_owned(),
-        valid: "1 to 64",
-    })
 }

@@ -18,49 +18,110 @@ use std::sync::Arc;
 
 use gnomon_shaders::shadow_maps::{SampledKernel, WholeKernel};
 
+use crate::parts::frame_settings::FrameSettings;
 use crate::parts::horizon::HORIZON;
-use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
-use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::parts::light_samples::Pattern;
+use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Sources};
+use crate::technique::{
+    Capabilities, Condition, Frame, Param, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
+};
 use crate::world::scene::Scene;
+use crate::{choices, param_list};
 
 /// The registry's entry.
 pub(crate) struct Pcss;
 
-const SAMPLING: ParamInfo = ParamInfo {
-    name: "sampling",
-    default: "points",
-    valid: "points|all",
-    summary: "some points of the kernels, or all of their texels",
-};
+choices! {
+    /// Which texels of the kernels are read.
+    enum Sampling {
+        /// Some.
+        Points = "points",
+        /// All.
+        All = "all",
+    }
+}
 
-const SEARCH: ParamInfo = ParamInfo {
-    name: "search-samples",
-    default: "16",
-    valid: "N",
-    summary: "points that look for blockers, a square number from 1 to 1024",
-};
+const SAMPLING: Param<Sampling> = Param::choice(
+    "sampling",
+    Sampling::Points.word(),
+    "some points of the kernels, or all of their texels",
+);
 
-const FILTER: ParamInfo = ParamInfo {
-    name: "samples",
-    default: "36",
-    valid: "N",
-    summary: "points that compare depths, a square number from 1 to 1024",
-};
+/// Where kernels are sampled at points.
+const AT_POINTS: Condition = Condition::Is("sampling", &["points"]);
 
-const PATTERN: ParamInfo = ParamInfo {
-    name: "pattern",
-    default: "stratified",
-    valid: "grid|stratified|rotated-grid",
-    summary: "how points are spread over the kernels, the same for all pixels",
-};
+const SEARCH: Param<u32> = Param::<u32>::square(
+    "search-samples",
+    16,
+    [1, 1024],
+    "points that look for blockers, a square number from 1 to 1024",
+)
+.when(AT_POINTS);
 
-const SEED: ParamInfo = ParamInfo {
-    name: "seed",
-    default: "1",
-    valid: "N",
-    summary: "of the jitter of stratified points",
-};
+const FILTER: Param<u32> = Param::<u32>::square(
+    "samples",
+    36,
+    [1, 1024],
+    "points that compare depths, a square number from 1 to 1024",
+)
+.when(AT_POINTS);
+
+const PATTERN: Param<Pattern> = Param::choice(
+    "pattern",
+    "stratified",
+    "how points are spread over the kernels, the same for all pixels",
+)
+.when(AT_POINTS);
+
+const SEED: Param<u64> = Param::<u64>::whole(
+    "seed",
+    1,
+    [0, u32::MAX as u64],
+    "of the jitter of stratified points",
+)
+.when(Condition::All(&[
+    AT_POINTS,
+    Condition::Is("pattern", &["stratified"]),
+]));
+
+/// What parameters decide.
+struct PcssSettings {
+    sampling: Sampling,
+    /// Points along a side.
+    search: u32,
+    /// Points along a side.
+    filter: u32,
+    pattern: Pattern,
+    seed: u64,
+    horizon: bool,
+    maps: MapSettings,
+    frame: FrameSettings,
+}
+
+impl PcssSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            sampling: params.get(&SAMPLING)?,
+            search: params.get(&SEARCH)?.isqrt(),
+            filter: params.get(&FILTER)?.isqrt(),
+            pattern: params.get(&PATTERN)?,
+            seed: params.get(&SEED)?,
+            horizon: params.get(&HORIZON)?,
+            maps: MapSettings::read(params)?,
+            frame: FrameSettings::read(params)?,
+        })
+    }
+
+    /// `side` times `side` points in -1..1; `stage` keeps jitters apart.
+    fn points(&self, side: u32, stage: u64) -> Arc<[[f32; 2]]> {
+        let cells = (0..side).flat_map(|j| (0..side).map(move |i| [i, j]));
+        let point = |cell| {
+            let place = self.pattern.place(cell, side, self.seed * 2 + stage);
+            place.map(|a| (2.0 * a - 1.0) as f32)
+        };
+        cells.map(point).collect()
+    }
+}
 
 /// Kernels are wider than any slope bias could make up for: a compromise.
 const MARGIN: Margin = Margin {
@@ -78,26 +139,22 @@ impl Technique for Pcss {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            SAMPLING,
-            SEARCH,
-            FILTER,
-            PATTERN,
-            SEED,
-            mapped::MAP_SIZE,
-            mapped::BIAS,
-            mapped::SLOPE_BIAS,
-            mapped::NEAR,
-            mapped::VIEW,
-            mapped::FIT,
-            HORIZON,
-            passes::LIGHT,
-            mapped::SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[
+                SAMPLING.info,
+                SEARCH.info,
+                FILTER.info,
+                PATTERN.info,
+                SEED.info
+            ],
+            MapSettings::PARAMS,
+            &[HORIZON.info],
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_light_views(ShadowKind::Soft)
     }
 
     fn frame(
@@ -106,21 +163,23 @@ impl Technique for Pcss {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let search = self.points(params, SEARCH, 0)?;
-        let filter = self.points(params, FILTER, 1)?;
-        let all = params.get(SAMPLING.name) == "all";
+        let settings = PcssSettings::read(params)?;
+        let search = settings.points(settings.search, 0);
+        let filter = settings.points(settings.filter, 1);
         let mapped = Mapped {
             name: self.name(),
             scene,
             size,
-            params,
+            frame: settings.frame,
+            maps: settings.maps,
+            horizon: settings.horizon,
             margin: MARGIN,
         };
         mapped.frame(
             |light| Sources::centre(self.name(), scene, light),
             |look_up| {
                 let light_half = look_up.light_half();
-                if all {
+                if settings.sampling == Sampling::All {
                     return look_up.whole(WholeKernel { light_half }).stage();
                 }
                 let kernel = SampledKernel {
@@ -131,25 +190,5 @@ impl Technique for Pcss {
                 look_up.whole(kernel).stage()
             },
         )
-    }
-}
-
-impl Pcss {
-    /// Points in -1..1, as many as `info` says; `stage` keeps jitters apart.
-    fn points(
-        &self,
-        params: &Params,
-        info: ParamInfo,
-        stage: u64,
-    ) -> Result<Arc<[[f32; 2]]>, TechniqueError> {
-        let side = mapped::square_side(self.name(), params, info)?;
-        let pattern = mapped::pattern(self.name(), params, PATTERN)?;
-        let seed: u64 = params.get(SEED.name).parse().unwrap_or(0);
-        let cells = (0..side).flat_map(|j| (0..side).map(move |i| [i, j]));
-        let point = |cell| {
-            let place = pattern.place(cell, side, seed * 2 + stage);
-            place.map(|a| (2.0 * a - 1.0) as f32)
-        };
-        Ok(cells.map(point).collect())
     }
 }

@@ -36,40 +36,83 @@
 use std::sync::Arc;
 
 use gnomon_raster::state::{ColorTargetState, CullMode, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Draw, LoadOp, Recording, RenderPass, RenderPipeline};
+use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::crossing::WedgeCrossing;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 use gnomon_shaders::transform::HomogeneousPoints;
 
-use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge, smoothed};
-use crate::parts::casters::{self, Examined, OPEN_CASTERS};
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::geometry::wedge::paper1::{LinkedWedge, smoothed};
+use crate::parts::casters::{self, Examined};
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::{self, LitTest};
+use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::{binding, homogeneous, homogeneous_draw};
 use crate::parts::wedges::penumbra::light::{self, LightSphere};
-use crate::parts::wedges::penumbra::report::Met;
+use crate::parts::wedges::penumbra::report::LinkedReport;
 use crate::parts::wedges::penumbra::screen::{self, Screen};
 use crate::parts::wedges::penumbra::volume::SoftVolume;
-use crate::parts::wedges::penumbra::{self, EXTRA_WEDGES, INTERPOLATION, hard};
-use crate::technique::{CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, Warning};
+use crate::parts::wedges::penumbra::{self, PenumbraSettings, hard};
+use crate::technique::{
+    Capabilities, Condition, Frame, LightFact, Param, ParamInfo, Params, Pass, PassRole,
+    SceneWedges, ShadowKind, Technique, TechniqueError, Warning, WedgeUse,
+};
 use crate::world::scene::Scene;
+use crate::{choices, param_list};
 
 /// The registry's entry.
 pub(crate) struct PenumbraWedges;
 
-const START: ParamInfo = ParamInfo {
-    name: "start",
-    default: "eye",
-    valid: "eye|lit",
-    summary: "intensity that rays start with: the eye's own, or full light as in paper I",
-};
+choices! {
+    /// Intensity that rays start with.
+    enum Start {
+        /// The eye's own.
+        Eye = "eye",
+        /// Full light.
+        Lit = "lit",
+    }
+}
 
-const SIDE_PLANES: ParamInfo = ParamInfo {
-    name: "side-planes",
-    default: "evaluate",
-    valid: "evaluate|cancel",
-    summary: "intensity where rays pass side planes: evaluated, or left out since neighbours cancel",
-};
+const START: Param<Start> = Param::choice(
+    "start",
+    Start::Eye.word(),
+    "intensity that rays start with: the eye's own, or full light as in paper I",
+)
+.when(Condition::Lights(LightFact::Extended));
+
+choices! {
+    /// Intensity where rays pass side planes.
+    enum SidePlanes {
+        /// Computed.
+        Evaluate = "evaluate",
+        /// Left out.
+        Cancel = "cancel",
+    }
+}
+
+const SIDE_PLANES: Param<SidePlanes> = Param::choice(
+    "side-planes",
+    SidePlanes::Evaluate.word(),
+    "intensity where rays pass side planes: evaluated, or left out since neighbours cancel",
+)
+.when(Condition::Lights(LightFact::Extended));
+
+/// What parameters decide.
+struct CrossingSettings {
+    start: Start,
+    side_planes: SidePlanes,
+    penumbra: PenumbraSettings,
+}
+
+impl CrossingSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            start: params.get(&START)?,
+            side_planes: params.get(&SIDE_PLANES)?,
+            penumbra: PenumbraSettings::read(params)?,
+        })
+    }
+}
 
 impl Technique for PenumbraWedges {
     fn name(&self) -> &'static str {
@@ -81,18 +124,18 @@ impl Technique for PenumbraWedges {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            INTERPOLATION,
-            START,
-            SIDE_PLANES,
-            EXTRA_WEDGES,
-            OPEN_CASTERS,
-            passes::LIGHT,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[START.info, SIDE_PLANES.info],
+            PenumbraSettings::PARAMS,
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            wedges: WedgeUse::Linked,
+            ..Capabilities::of_silhouettes(ShadowKind::Soft)
+        }
     }
 
     fn frame(
@@ -101,129 +144,117 @@ impl Technique for PenumbraWedges {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let targets = Targets::create(size, params, &mut recording)?;
-        let draws = SceneDraws::new(scene, size, params);
-        let casters = casters::examine(self.name(), scene, params)?;
-        let lights = passes::lights(scene, params)?;
-        let builder = Builder {
-            scene,
+        let settings = CrossingSettings::read(params)?;
+        let casters = casters::examine(scene, settings.penumbra.open_casters)?;
+        let mut frame = ShadowedFrame::new(scene, size, &settings.penumbra.frame)?.with_ambient();
+        let draws = CrossingDraws {
             size,
-            params,
-            targets: &targets,
-            draws: &draws,
+            settings: &settings,
             casters: &casters,
-            screen: Screen::new(&draws.view, size),
+            screen: Screen::new(&frame.draws.view, size),
         };
-        let mut list = vec![draws.ambient_pass(&targets)];
-        let (mut warnings, mut uses) = (Vec::new(), Vec::new());
-        let buffer = penumbra::light_intensity(size, &mut recording)?;
+        let buffer = penumbra::light_intensity(size, &mut frame.recording)?;
         let visibility = penumbra::visibility(buffer);
-        for &light in lights.iter().rev() {
-            let mut pass = penumbra::intensity_pass(
-                passes::label("wedges", light, &lights),
+        frame.lit(LitTest::Visibility(visibility), |light| {
+            let mut pass =
+                penumbra::intensity_pass(light.label("wedges"), buffer, penumbra::cleared(FULL));
+            draws.fill(light, &mut pass);
+            let mut passes = vec![Pass::new(PassRole::Wedges, pass)];
+            let label = light.label("not receiving");
+            passes.extend(penumbra::not_receiving_pass(
+                label,
                 buffer,
-                penumbra::cleared(FULL),
-            );
-            builder.fill(light, &mut pass, &mut warnings, &mut uses);
-            list.push(pass);
-            let label = passes::label("not receiving", light, &lights);
-            list.extend(penumbra::not_receiving_pass(
-                label, buffer, &targets, &draws,
+                light.targets,
+                light.draws,
             ));
-            let label = passes::label("lit", light, &lights);
-            list.push(draws.lit_pass(&targets, light, &label, LitTest::Visibility(visibility)));
-        }
-        let mut frame = targets.frame(recording, list, visibility.output())?;
-        frame.warnings = warnings;
-        frame.casters = uses;
-        Ok(frame)
+            Ok(passes)
+        })
+    }
+
+    fn wedges(
+        &self,
+        scene: &Scene,
+        params: &Params,
+    ) -> Result<Option<SceneWedges>, TechniqueError> {
+        penumbra::scene_wedges(scene, params).map(Some)
     }
 }
 
-/// What the passes of all lights share.
-struct Builder<'a> {
-    scene: &'a Scene,
+/// What the draws of all lights share.
+struct CrossingDraws<'a> {
     size: [u32; 2],
-    params: &'a Params,
-    targets: &'a Targets,
-    draws: &'a SceneDraws<'a>,
+    settings: &'a CrossingSettings,
     casters: &'a [Examined<'a>],
     screen: Screen,
 }
 
-impl Builder<'_> {
+impl CrossingDraws<'_> {
     /// Adds what a light's wedges need to its empty pass.
-    fn fill(
-        &self,
-        light: usize,
-        pass: &mut RenderPass,
-        warnings: &mut Vec<Warning>,
-        uses: &mut Vec<CasterUse>,
-    ) {
-        let source = &self.scene.lights[light];
-        warnings.extend(light::substitution(light, source));
+    fn fill(&self, turn: &mut LightTurn<'_, '_>, pass: &mut RenderPass) {
+        let (light, source) = (turn.number, turn.light());
+        turn.notes
+            .warnings
+            .extend(light::substitution(light, source));
         let Some(sphere) = LightSphere::of(source) else {
-            pass.depth_stencil = self.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
+            pass.depth_stencil = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
             for caster in self.casters {
-                let view = &self.draws.view;
-                let (draw, used) = hard::draw(self.scene, view, self.size, light, caster, None);
+                let (draw, used) =
+                    hard::draw(turn.scene, turn.view(), self.size, light, caster, None);
                 pass.draws.push(draw);
-                uses.push(used);
+                turn.notes.casters.push(used);
             }
             return;
         };
-        let mut met = Met::default();
+        let mut report = LinkedReport::default();
         let mut start = FULL;
+        let linked = self.settings.penumbra.linked();
         for caster in self.casters {
-            let volume = caster.soft_volume(&sphere, &self.settings(), &mut met);
-            start += self.seen_by_eye(caster, &volume);
+            let volume = caster.soft_volume(&sphere, &linked, &mut report);
+            start += self.seen_by_eye(turn, caster, &volume);
             let wedges = volume.wedges.iter();
             pass.draws
-                .extend(wedges.map(|w| self.draw(&caster.object.name, w)));
+                .extend(wedges.map(|w| self.draw(turn, &caster.object.name, w)));
         }
-        if self.params.get(START.name) == "eye" {
+        if self.settings.start == Start::Eye {
             pass.color[0].load = penumbra::cleared(start);
         }
-        warnings.extend(start_warning(light, start));
-        warnings.extend(met.warnings(light));
-    }
-
-    fn settings(&self) -> LinkedSettings {
-        LinkedSettings {
-            extra_wedges: self.params.get(EXTRA_WEDGES.name) != "off",
-            ..LinkedSettings::default()
-        }
+        turn.notes.warnings.extend(start_warning(light, start));
+        turn.notes.warnings.extend(report.warnings(light));
     }
 
     /// What a caster takes from, or its wedges give back to, the eye.
-    fn seen_by_eye(&self, caster: &Examined<'_>, volume: &SoftVolume) -> f32 {
-        let umbra = volume.winding(&caster.object.mesh, self.scene.camera.eye) as f32;
-        let penumbra = volume.wedges.iter().filter_map(|w| self.at_eye(w));
+    fn seen_by_eye(
+        &self,
+        turn: &LightTurn<'_, '_>,
+        caster: &Examined<'_>,
+        volume: &SoftVolume,
+    ) -> f32 {
+        let umbra = volume.winding(&caster.object.mesh, turn.scene.camera.eye) as f32;
+        let penumbra = volume.wedges.iter().filter_map(|w| self.at_eye(turn, w));
         -FULL * umbra + penumbra.sum::<f32>()
     }
 
     /// 255 times the eye's intensity in a wedge that holds it, rounded.
-    fn at_eye(&self, wedge: &LinkedWedge) -> Option<f32> {
-        let planes = self.screen.wedge(&self.draws.view, wedge);
+    fn at_eye(&self, turn: &LightTurn<'_, '_>, wedge: &LinkedWedge) -> Option<f32> {
+        let planes = self.screen.wedge(turn.view(), wedge);
         // Equal to the shader's decision: no plane lies between eye and wedge.
         let inside = planes.iter().all(|p| p.eye_is_inside());
-        let s = wedge.intensity(self.scene.camera.eye);
-        let s = match penumbra::interpolation(self.params) {
+        let s = wedge.intensity(turn.scene.camera.eye);
+        let s = match self.settings.penumbra.interpolation {
             Interpolation::Linear => s,
             Interpolation::Smoothstep => smoothed(s),
         };
         inside.then(|| ((s as f32).clamp(0.0, 1.0) * FULL).round_ties_even())
     }
 
-    fn draw(&self, label: &str, wedge: &LinkedWedge) -> Draw {
-        let view = &self.draws.view;
-        let evaluate = self.params.get(SIDE_PLANES.name) != "cancel";
+    fn draw(&self, turn: &LightTurn<'_, '_>, label: &str, wedge: &LinkedWedge) -> Draw {
+        let view = turn.view();
+        let evaluate = self.settings.side_planes == SidePlanes::Evaluate;
         let shader = WedgeCrossing {
             planes: self.screen.wedge(view, wedge),
-            rates: screen::rates(wedge, penumbra::interpolation(self.params)),
+            rates: screen::rates(wedge, self.settings.penumbra.interpolation),
             sides: evaluate.then(|| self.screen.sides(view, wedge)),
-            at_eye: self.at_eye(wedge).unwrap_or(0.0),
+            at_eye: self.at_eye(turn, wedge).unwrap_or(0.0),
         };
         let pipeline = RenderPipeline {
             label: "wedge".into(),
@@ -238,7 +269,7 @@ impl Builder<'_> {
         };
         let mesh = wedge.mesh();
         let vertices = Arc::new(homogeneous(view, &mesh.vertices));
-        let depth = vec![binding(self.targets.depth_texture())];
+        let depth = vec![binding(turn.targets.depth_texture())];
         homogeneous_draw(label, pipeline, &vertices, &mesh.triangles, depth)
     }
 }

@@ -20,55 +20,102 @@ use gnomon_raster::state::{
     ColorTargetState, CompareFunction, DepthStencilState, PrimitiveState, StencilFaceState,
     StencilOperation, StencilState,
 };
-use gnomon_raster::{
-    Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor,
-};
+use gnomon_raster::{Draw, Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};
 use gnomon_shaders::surface::Constant;
 use gnomon_shaders::transform::FullScreen;
 
-use crate::parts::casters;
-use crate::parts::light_samples::{Pattern, UnknownPattern, light_points};
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::light_samples::{Pattern, light_points};
+use crate::parts::passes::LitTest;
+use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::{VisibilityTexture, attachment, full_screen};
-use crate::parts::volumes::volume_draws::{self, Casters};
+use crate::parts::volumes::volume_draws::{VolumeCasters, VolumeSettings};
 use crate::technique::{
-    CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, VolumeMethod, Warning,
+    Capabilities, CasterUse, Condition, Frame, LightFact, Param, ParamInfo, Params, Pass, PassRole,
+    ShadowKind, Technique, TechniqueError, VolumeMethod, Warning,
 };
 use crate::world::scene::Scene;
+use crate::{choices, param_list};
 
 /// The registry's entry.
 pub(crate) struct SampledShadowVolumes;
 
-const SAMPLES: ParamInfo = ParamInfo {
-    name: "samples",
-    default: "64",
-    valid: "N",
-    summary: "points of the light, a square number from 1 to 4096; the papers have 256 and 1024",
-};
+const SAMPLES: Param<u32> = Param::<u32>::square(
+    "samples",
+    64,
+    [1, 4096],
+    "points of the light, a square number from 1 to 4096; the papers have 256 and 1024",
+)
+.when(Condition::Lights(LightFact::Extended));
 
-const PATTERN: ParamInfo = ParamInfo {
-    name: "pattern",
-    default: "grid",
-    valid: "grid|stratified|rotated-grid",
-    summary: "grid: the papers'; stratified: jittered in its cells; rotated-grid: no two in a line",
-};
+const PATTERN: Param<Pattern> = Param::choice(
+    "pattern",
+    "grid",
+    "grid: the papers'; stratified: jittered in its cells; rotated-grid: no two in a line",
+)
+.when(Condition::Lights(LightFact::Extended));
 
-const SEED: ParamInfo = ParamInfo {
-    name: "seed",
-    default: "1",
-    valid: "N",
-    summary: "of the jitter of stratified samples, and of the depth of samples in spheres",
-};
+const SEED: Param<u64> = Param::<u64>::whole(
+    "seed",
+    1,
+    [0, u32::MAX as u64],
+    "of the jitter of stratified samples, and of the depth of samples in spheres",
+)
+.when(Condition::Any(&[
+    Condition::All(&[
+        Condition::Is("pattern", &["stratified"]),
+        Condition::Lights(LightFact::Extended),
+    ]),
+    Condition::Lights(LightFact::Sphere),
+]));
 
-const ACCUMULATION: ParamInfo = ParamInfo {
-    name: "accumulation",
-    default: "r32f",
-    valid: "r32f|r16f",
-    summary: "format in which visibility is summed; r16f is exact up to 1024 samples, powers of 4",
-};
+choices! {
+    /// What visibility is summed in.
+    enum Accumulation {
+        /// 32-bit floats.
+        R32f = "r32f",
+        /// 16-bit floats.
+        R16f = "r16f",
+    }
+}
 
-/// Most samples that are taken.
-const MOST: u32 = 4096;
+const ACCUMULATION: Param<Accumulation> = Param::choice(
+    "accumulation",
+    Accumulation::R32f.word(),
+    "format in which visibility is summed; r16f is exact up to 1024 samples, powers of 4",
+);
+
+impl Accumulation {
+    fn format(self) -> Format {
+        match self {
+            Self::R32f => Format::R32Float,
+            Self::R16f => Format::R16Float,
+        }
+    }
+}
+
+/// What parameters decide.
+struct SampledSettings {
+    sampling: Sampling,
+    accumulation: Accumulation,
+    volumes: VolumeSettings,
+    frame: FrameSettings,
+}
+
+impl SampledSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            sampling: Sampling {
+                side: params.get(&SAMPLES)?.isqrt(),
+                pattern: params.get(&PATTERN)?,
+                seed: params.get(&SEED)?,
+            },
+            accumulation: params.get(&ACCUMULATION)?,
+            volumes: VolumeSettings::read(params)?,
+            frame: FrameSettings::read(params)?,
+        })
+    }
+}
 
 impl Technique for SampledShadowVolumes {
     fn name(&self) -> &'static str {
@@ -80,20 +127,15 @@ impl Technique for SampledShadowVolumes {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            SAMPLES,
-            PATTERN,
-            SEED,
-            ACCUMULATION,
-            volume_draws::METHOD,
-            casters::OPEN_CASTERS,
-            passes::LIGHT,
-            casters::SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[SAMPLES.info, PATTERN.info, SEED.info, ACCUMULATION.info],
+            VolumeSettings::PARAMS,
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_silhouettes(ShadowKind::Soft)
     }
 
     fn frame(
@@ -102,42 +144,17 @@ impl Technique for SampledShadowVolumes {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let sampling = Sampling::new(self.name(), params)?;
-        let targets = Targets::create(size, params, &mut recording)?;
-        let format = match params.get(ACCUMULATION.name) {
-            "r16f" => Format::R16Float,
-            _ => Format::R32Float,
-        };
+        let settings = SampledSettings::read(params)?;
+        let casters = VolumeCasters::new(scene, size, &settings.volumes)?;
+        let mut frame = ShadowedFrame::new(scene, size, &settings.frame)?.with_ambient();
         let [width, height] = size;
+        let format = settings.accumulation.format();
         let sum = TextureDescriptor::d2("visibility", format, width, height);
-        let sum = VisibilityTexture::red(recording.create(&sum)?);
-        let draws = SceneDraws::new(scene, size, params);
-        let casters = Casters::new(self.name(), scene, size, params)?;
-        let lights = passes::lights(scene, params)?;
-        let mut list = vec![draws.ambient_pass(&targets)];
-        let (mut uses, mut warnings) = (Vec::new(), Vec::new());
-        for &light in lights.iter().rev() {
-            let built = sampling.draws(&casters, scene, light)?;
-            uses.extend(built.uses);
-            warnings.extend(built.warnings);
-            list.push(RenderPass {
-                label: passes::label("samples", light, &lights),
-                color: vec![attachment(sum.texture, LoadOp::Clear([0.0; 4]))],
-                depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
-                draws: built
-                    .draws
-                    .into_iter()
-                    .chain(draws.not_receiving("fully visible", [1.0, 0.0, 0.0, 0.0]))
-                    .collect(),
-            });
-            let label = passes::label("lit", light, &lights);
-            list.push(draws.lit_pass(&targets, light, &label, LitTest::Visibility(sum)));
-        }
-        let mut frame = targets.frame(recording, list, sum.output())?;
-        frame.warnings = warnings;
-        frame.casters = uses;
-        Ok(frame)
+        let sum = VisibilityTexture::red(frame.recording.create(&sum)?);
+        frame.lit(LitTest::Visibility(sum), |light| {
+            let pass = settings.sampling.pass(&casters, sum, light)?;
+            Ok(vec![Pass::new(PassRole::Samples, pass)])
+        })
     }
 }
 
@@ -159,32 +176,31 @@ struct Sampled {
 }
 
 impl Sampling {
-    fn new(technique: &'static str, params: &Params) -> Result<Self, TechniqueError> {
-        let bad = |key: &'static str, valid: &'static str| TechniqueError::BadValue {
-            technique,
-            key,
-            value: params.get(key).to_owned(),
-            valid,
-        };
-        let squares = "square numbers from 1 to 4096: 1, 4, 9, 16, 64, 256, 1024, ...";
-        let samples: u32 = params.get(SAMPLES.name).parse().unwrap_or(0);
-        let side = samples.isqrt();
-        if side == 0 || side * side != samples || samples > MOST {
-            return Err(bad(SAMPLES.name, squares));
-        }
-        let pattern = params.get(PATTERN.name).parse();
-        let seed = params.get(SEED.name).parse();
-        Ok(Self {
-            side,
-            pattern: pattern.map_err(|_: UnknownPattern| bad(PATTERN.name, PATTERN.valid))?,
-            seed: seed.map_err(|_| bad(SEED.name, SEED.valid))?,
+    /// Adds up hard shadows of all points of a light in `sum`.
+    fn pass(
+        &self,
+        casters: &VolumeCasters<'_>,
+        sum: VisibilityTexture,
+        light: &mut LightTurn<'_, '_>,
+    ) -> Result<RenderPass, TechniqueError> {
+        let built = self.draws(casters, light.scene, light.number)?;
+        light.notes.casters.extend(built.uses);
+        light.notes.warnings.extend(built.warnings);
+        let lit = light
+            .draws
+            .not_receiving("fully visible", [1.0, 0.0, 0.0, 0.0]);
+        Ok(RenderPass {
+            label: light.label("samples"),
+            color: vec![attachment(sum.texture, LoadOp::Clear([0.0; 4]))],
+            depth_stencil: light.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws: built.draws.into_iter().chain(lit).collect(),
         })
     }
 
     /// Volumes and accumulation for each point of light number `light`.
     fn draws(
         &self,
-        casters: &Casters<'_>,
+        casters: &VolumeCasters<'_>,
         scene: &Scene,
         light: usize,
     ) -> Result<Sampled, TechniqueError> {
@@ -350,11 +366,9 @@ mod tests {
     #[test]
     fn sample_counts_are_checked() {
         let technique = find("sampled-shadow-volumes").unwrap();
-        let scene = builtin::build("cylinder").unwrap();
         for bad in ["0", "2", "1023", "4097", "8100"] {
-            let params = Params::parse(technique, [format!("samples={bad}")]).unwrap();
-            let done = render(&scene, technique, &params, &RenderSettings::default());
-            let message = done.err().unwrap().to_string();
+            let refused = Params::parse(technique, [format!("samples={bad}")]);
+            let message = refused.err().unwrap().to_string();
             assert!(
                 message.contains(bad) && message.contains("square numbers"),
                 "{message}"

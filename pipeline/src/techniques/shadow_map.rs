@@ -3,9 +3,12 @@
 
 use gnomon_shaders::shadow_maps::BoxTaps;
 
-use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
-use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::param_list;
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Sources};
+use crate::technique::{
+    Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
+};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -21,20 +24,11 @@ impl Technique for ShadowMap {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            mapped::MAP_SIZE,
-            mapped::BIAS,
-            mapped::SLOPE_BIAS,
-            mapped::NEAR,
-            mapped::VIEW,
-            mapped::FIT,
-            passes::LIGHT,
-            mapped::SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(MapSettings::PARAMS, FrameSettings::PARAMS)
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_light_views(ShadowKind::Hard)
     }
 
     fn frame(
@@ -47,7 +41,9 @@ impl Technique for ShadowMap {
             name: self.name(),
             scene,
             size,
-            params,
+            frame: FrameSettings::read(params)?,
+            maps: MapSettings::read(params)?,
+            horizon: false,
             margin: Margin::ONE_TEXEL,
         };
         mapped.frame(

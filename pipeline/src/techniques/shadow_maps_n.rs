@@ -9,38 +9,74 @@
 use gnomon_raster::state::ColorTargetState;
 use gnomon_shaders::shadow_maps::BoxTaps;
 
+use crate::param_list;
+use crate::parts::frame_settings::FrameSettings;
 use crate::parts::horizon::HORIZON;
-use crate::parts::light_samples::light_points;
+use crate::parts::light_samples::{Pattern, light_points};
 use crate::parts::maps::light_view::{LightExtent, ViewedLight};
-use crate::parts::maps::mapped::{self, Mapped, Margin, Sources};
-use crate::parts::passes;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Sources};
+use crate::technique::{
+    Capabilities, Condition, Frame, LightFact, Param, ParamInfo, Params, ShadowKind, Technique,
+    TechniqueError,
+};
 use crate::world::light::HardLight;
 use crate::world::scene::Scene;
 
 /// The registry's entry.
 pub(crate) struct ShadowMapsN;
 
-const MAPS: ParamInfo = ParamInfo {
-    name: "maps",
-    default: "64",
-    valid: "N",
-    summary: "points of the light, a square number from 1 to 1024",
-};
+const MAPS: Param<u32> = Param::<u32>::square(
+    "maps",
+    64,
+    [1, 1024],
+    "points of the light, a square number from 1 to 1024",
+)
+.when(Condition::Lights(LightFact::Extended));
 
-const PATTERN: ParamInfo = ParamInfo {
-    name: "pattern",
-    default: "rotated-grid",
-    valid: "grid|stratified|rotated-grid",
-    summary: "how points are spread over the light",
-};
+const PATTERN: Param<Pattern> = Param::choice(
+    "pattern",
+    "rotated-grid",
+    "how points are spread over the light",
+)
+.when(Condition::Lights(LightFact::Extended));
 
-const SEED: ParamInfo = ParamInfo {
-    name: "seed",
-    default: "1",
-    valid: "N",
-    summary: "of the jitter of stratified points, and of the depth of points in spheres",
-};
+const SEED: Param<u64> = Param::<u64>::whole(
+    "seed",
+    1,
+    [0, u32::MAX as u64],
+    "of the jitter of stratified points, and of the depth of points in spheres",
+)
+.when(Condition::Any(&[
+    Condition::All(&[
+        Condition::Is("pattern", &["stratified"]),
+        Condition::Lights(LightFact::Extended),
+    ]),
+    Condition::Lights(LightFact::Sphere),
+]));
+
+/// What parameters decide.
+struct ShadowMapsNSettings {
+    /// Points along a side.
+    side: u32,
+    pattern: Pattern,
+    seed: u64,
+    horizon: bool,
+    maps: MapSettings,
+    frame: FrameSettings,
+}
+
+impl ShadowMapsNSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            side: params.get(&MAPS)?.isqrt(),
+            pattern: params.get(&PATTERN)?,
+            seed: params.get(&SEED)?,
+            horizon: params.get(&HORIZON)?,
+            maps: MapSettings::read(params)?,
+            frame: FrameSettings::read(params)?,
+        })
+    }
+}
 
 impl Technique for ShadowMapsN {
     fn name(&self) -> &'static str {
@@ -52,24 +88,16 @@ impl Technique for ShadowMapsN {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            MAPS,
-            PATTERN,
-            SEED,
-            mapped::MAP_SIZE,
-            mapped::BIAS,
-            mapped::SLOPE_BIAS,
-            mapped::NEAR,
-            mapped::VIEW,
-            mapped::FIT,
-            HORIZON,
-            passes::LIGHT,
-            mapped::SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[MAPS.info, PATTERN.info, SEED.info],
+            MapSettings::PARAMS,
+            &[HORIZON.info],
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_light_views(ShadowKind::Soft)
     }
 
     fn frame(
@@ -78,16 +106,18 @@ impl Technique for ShadowMapsN {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let side = mapped::square_side(self.name(), params, MAPS)?;
+        let settings = ShadowMapsNSettings::read(params)?;
         let mapped = Mapped {
             name: self.name(),
             scene,
             size,
-            params,
+            frame: settings.frame,
+            maps: settings.maps,
+            horizon: settings.horizon,
             margin: Margin::ONE_TEXEL,
         };
         mapped.frame(
-            |light| self.points(scene, light, side, params),
+            |light| self.points(scene, light, &settings),
             |look_up| look_up.share(BoxTaps(1)).stage(),
         )
     }
@@ -99,12 +129,15 @@ impl ShadowMapsN {
         &self,
         scene: &Scene,
         light: usize,
-        side: u32,
-        params: &Params,
+        settings: &ShadowMapsNSettings,
     ) -> Result<Sources, TechniqueError> {
         let whole = ViewedLight::new(self.name(), &scene.lights[light], light)?;
-        let pattern = mapped::pattern(self.name(), params, PATTERN)?;
-        let seed = params.get(SEED.name).parse().unwrap_or(0);
+        let ShadowMapsNSettings {
+            pattern,
+            side,
+            seed,
+            ..
+        } = *settings;
         let points = light_points(&scene.lights[light], pattern, side, seed)?;
         let place = |point: &HardLight| match point {
             HardLight::Point(p) => *p,

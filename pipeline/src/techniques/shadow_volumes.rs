@@ -12,12 +12,16 @@
 //! Visibility is that of the first light asked for, which is drawn last, so
 //! that the final stencil is its own.
 
-use gnomon_raster::{Draw, LoadOp, Recording, RenderPass};
+use gnomon_raster::{Draw, LoadOp, RenderPass};
 
-use crate::parts::casters;
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
-use crate::parts::volumes::volume_draws::{self, Casters};
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, VisibilityOutput};
+use crate::param_list;
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::{LitTest, Targets};
+use crate::parts::shadowed_frame::ShadowedFrame;
+use crate::parts::volumes::volume_draws::{VolumeCasters, VolumeSettings};
+use crate::technique::{
+    Capabilities, Frame, ParamInfo, Params, Pass, PassRole, ShadowKind, Technique, TechniqueError,
+};
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -33,16 +37,11 @@ impl Technique for ShadowVolumes {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            volume_draws::METHOD,
-            casters::OPEN_CASTERS,
-            passes::LIGHT,
-            casters::SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(VolumeSettings::PARAMS, FrameSettings::PARAMS)
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_silhouettes(ShadowKind::Hard)
     }
 
     fn frame(
@@ -51,27 +50,17 @@ impl Technique for ShadowVolumes {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let targets = Targets::create(size, params, &mut recording)?;
-        let draws = SceneDraws::new(scene, size, params);
-        let casters = Casters::new(self.name(), scene, size, params)?;
-        let lights = passes::lights(scene, params)?;
-        let mut list = vec![draws.ambient_pass(&targets)];
-        let mut uses = Vec::new();
-        let mut warnings = Vec::new();
-        for (turn, &light) in lights.iter().rev().enumerate() {
-            let built = casters.volumes(light, scene.lights[light].hard(), &[]);
-            uses.extend(built.uses);
-            warnings.extend(built.warnings);
-            let label = passes::label("volumes", light, &lights);
-            list.push(volumes_pass(&targets, label, built.draws, turn == 0));
-            let label = passes::label("lit", light, &lights);
-            list.push(draws.lit_pass(&targets, light, &label, LitTest::StencilZero));
-        }
-        let mut frame = targets.frame(recording, list, VisibilityOutput::StencilZero)?;
-        frame.warnings = warnings;
-        frame.casters = uses;
-        Ok(frame)
+        let settings = FrameSettings::read(params)?;
+        let casters = VolumeCasters::new(scene, size, &VolumeSettings::read(params)?)?;
+        let frame = ShadowedFrame::new(scene, size, &settings)?.with_ambient();
+        frame.lit(LitTest::StencilZero, |light| {
+            let built = casters.volumes(light.number, light.light().hard(), &[]);
+            light.notes.casters.extend(built.uses);
+            light.notes.warnings.extend(built.warnings);
+            let (label, first) = (light.label("volumes"), light.turn == 0);
+            let pass = volumes_pass(light.targets, label, built.draws, first);
+            Ok(vec![Pass::new(PassRole::Volumes, pass)])
+        })
     }
 }
 

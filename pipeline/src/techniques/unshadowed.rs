@@ -1,10 +1,10 @@
 //! The scene without shadows: ambient light, then every light added everywhere.
 
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, VisibilityOutput};
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::LitTest;
+use crate::parts::shadowed_frame::ShadowedFrame;
+use crate::technique::{Capabilities, Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
-use gnomon_raster::Recording;
-
-use crate::parts::passes::{self, LitTest, SceneDraws};
 
 /// The registry's entry.
 pub(crate) struct Unshadowed;
@@ -19,13 +19,11 @@ impl Technique for Unshadowed {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            passes::LIGHT,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        FrameSettings::PARAMS
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::UNSHADOWED
     }
 
     fn frame(
@@ -34,15 +32,8 @@ impl Technique for Unshadowed {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let targets = passes::Targets::create(size, params, &mut recording)?;
-        let draws = SceneDraws::new(scene, size, params);
-        let mut list = vec![draws.ambient_pass(&targets)];
-        let lights = passes::lights(scene, params)?;
-        for &light in &lights {
-            let label = passes::label("lit", light, &lights);
-            list.push(draws.lit_pass(&targets, light, &label, LitTest::Everywhere));
-        }
-        targets.frame(recording, list, VisibilityOutput::Full)
+        let settings = FrameSettings::read(params)?;
+        let frame = ShadowedFrame::new(scene, size, &settings)?.with_ambient();
+        frame.lit(LitTest::Everywhere, |_| Ok(Vec::new()))
     }
 }

@@ -141,7 +141,7 @@ impl ResultDocument {
             time_ms: done.frame_ms,
             bytes: tables::frame_bytes(&done.report),
             shaded_fragments: tables::frame_counters(&done.report).fragment_shader_invocations,
-            wedge_work: WedgeWorkDocument::of(&done.report),
+            wedge_work: WedgeWorkDocument::of(done),
             pixels: PixelDocument {
                 compared: pixels(score.visibility.all),
                 umbra: pixels(region(umbra)),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use gnomon_pipeline::measure::comparison::{CompareError, ReferenceKind};
 use gnomon_pipeline::measure::render::RenderSettings;
 use gnomon_pipeline::technique::{Params, Technique};
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
@@ -38,8 +38,8 @@ pub(super) struct Entry {
 }
 
 impl Job {
-    pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
-        let entries = entries(args, Some(args.light))?;
+    pub(super) fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
+        let entries = entries(args, registry, Some(args.light))?;
         let scene = SceneSource::open(&args.scene)?.at(args.time)?;
         let (given, count) = (args.light, scene.lights.len());
         if given >= count {
@@ -70,19 +70,28 @@ impl Job {
 }
 
 /// The techniques to compare, under light number `light` alone or under all.
-pub(super) fn entries(args: &CompareArgs, light: Option<usize>) -> Result<Vec<Entry>, CliError> {
+pub(super) fn entries(
+    args: &CompareArgs,
+    registry: &Registry,
+    light: Option<usize>,
+) -> Result<Vec<Entry>, CliError> {
     let entries = args
         .techniques
         .iter()
-        .map(|arg| Entry::new(arg, args, light));
+        .map(|arg| Entry::new(arg, args, registry, light));
     let entries = entries.collect::<Result<Vec<Entry>, CliError>>()?;
-    check_settings(args)?;
+    check_settings(args, registry)?;
     Ok(entries)
 }
 
 impl Entry {
-    fn new(arg: &EntryArg, args: &CompareArgs, light: Option<usize>) -> Result<Self, CliError> {
-        let technique = find(&arg.technique)?;
+    fn new(
+        arg: &EntryArg,
+        args: &CompareArgs,
+        registry: &Registry,
+        light: Option<usize>,
+    ) -> Result<Self, CliError> {
+        let technique = registry.find(&arg.technique)?;
         let for_all = args
             .settings
             .iter()
@@ -125,9 +134,9 @@ impl Entry {
 const LIGHT: &str = "light";
 
 /// Settings of techniques that are not compared would go unnoticed.
-fn check_settings(args: &CompareArgs) -> Result<(), CliError> {
+fn check_settings(args: &CompareArgs, registry: &Registry) -> Result<(), CliError> {
     for given in &args.settings {
-        find(&given.technique)?;
+        registry.find(&given.technique)?;
         if !args
             .techniques
             .iter()

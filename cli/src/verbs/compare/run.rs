@@ -1,5 +1,7 @@
 //! From the command line to the comparison.
 
+use gnomon_pipeline::techniques::Registry;
+
 use super::args::CompareArgs;
 use super::document::CompareDocument;
 use super::job::Job;
@@ -12,11 +14,11 @@ use crate::output::progress::Progress;
 use crate::output::{self, numbers, png};
 
 /// Renders, measures, draws and prints.
-pub(crate) fn run(args: &CompareArgs) -> Result<(), CliError> {
+pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliError> {
     if args.environment.env.is_some() {
-        return environment::run(args);
+        return environment::run(args, registry);
     }
-    let job = Job::new(args)?;
+    let job = Job::new(args, registry)?;
     let progress = Progress::new(job.steps());
     let found = measure::run(&job, &progress)?;
     progress.doing("writing the picture");

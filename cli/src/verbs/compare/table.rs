@@ -40,7 +40,8 @@ const FIGURES: &[Figure] = &[
         count(tables::frame_counters(&m.done.report).fragment_shader_invocations)
     }),
     ("  over penumbra pairs", |m| {
-        WedgeWork::of(&m.done.report).map_or(NONE.to_owned(), |w| format!("{:.2}", w.ratio()))
+        WedgeWork::of(&m.done.report, &m.done.roles)
+            .map_or(NONE.to_owned(), |w| format!("{:.2}", w.ratio()))
     }),
 ];
 

@@ -7,11 +7,11 @@
 use std::path::{Path, PathBuf};
 
 use gnomon_pipeline::measure::render::{Rendered, render};
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::techniques::Registry;
 use serde::Serialize;
 
 use super::args::RenderArgs;
-use super::job::{Job, default_out, source};
+use super::job::{self, Job, default_out, source};
 use super::write::write;
 use crate::error::CliError;
 use crate::output;
@@ -42,9 +42,10 @@ struct FrameDocument {
 }
 
 /// Renders `count` frames.
-pub(super) fn run(args: &RenderArgs, count: u32) -> Result<(), CliError> {
+pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<(), CliError> {
     check(args)?;
-    let technique = find(&args.technique)?;
+    let technique = registry.find(&args.technique)?;
+    job::check_wedges(args, technique, registry)?;
     let params = crate::verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
     let mut source = source(args)?;
     let rate = args.fps.unwrap_or(RATE);

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use gnomon_pipeline::measure::heat::{self, Heat};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered};
-use gnomon_pipeline::technique::{Params, Technique};
-use gnomon_pipeline::techniques::scene_wedges::{self, SceneWedges};
-use gnomon_pipeline::techniques::{self, find};
+use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
+use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
 use super::args::RenderArgs;
@@ -29,8 +28,9 @@ pub(super) struct Job {
 }
 
 impl Job {
-    pub(super) fn new(args: &RenderArgs) -> Result<Self, CliError> {
-        let technique = find(&args.technique)?;
+    pub(super) fn new(args: &RenderArgs, registry: &Registry) -> Result<Self, CliError> {
+        let technique = registry.find(&args.technique)?;
+        check_wedges(args, technique, registry)?;
         let params = verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
         if let Some(out) = &args.out {
             files::check_extension("--out", out, "png")?;
@@ -51,7 +51,6 @@ impl Job {
         out: Option<PathBuf>,
     ) -> Result<Self, CliError> {
         check_overlays(args, &scene)?;
-        check_wedges(args, technique, &params)?;
         let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
         let out = out.unwrap_or_else(|| default_out(&scene.name, technique.name()));
         files::check_target(&out)?;
@@ -84,11 +83,7 @@ impl Job {
         if !self.overlays.iter().any(|(k, _)| *k == OverlayKind::Wedges) {
             return Ok(None);
         }
-        Ok(scene_wedges::of_scene(
-            &self.scene,
-            self.technique,
-            &self.params,
-        )?)
+        Ok(self.technique.wedges(&self.scene, &self.params)?)
     }
 
     pub(super) fn heat(&self) -> Result<Option<Heat>, CliError> {
@@ -128,19 +123,17 @@ fn check_overlays(args: &RenderArgs, scene: &Scene) -> Result<(), CliError> {
 }
 
 /// Refuses the wedges of a technique that has none.
-fn check_wedges(
+pub(super) fn check_wedges(
     args: &RenderArgs,
     technique: &dyn Technique,
-    params: &Params,
+    registry: &Registry,
 ) -> Result<(), CliError> {
     let wanted = args.overlay.contains(&OverlayKind::Wedges);
-    if !wanted || scene_wedges::kind(technique, params).is_some() {
+    if !wanted || technique.capabilities().has_wedges() {
         return Ok(());
     }
-    let with_wedges = techniques::all().iter().filter(|t| {
-        let params = Params::defaults(**t);
-        scene_wedges::kind(**t, &params).is_some()
-    });
+    let all = registry.all().iter();
+    let with_wedges = all.filter(|t| t.capabilities().has_wedges());
     let names: Vec<&str> = with_wedges.map(|t| t.name()).collect();
     Err(CliError::Flag {
         flag: "--overlay",

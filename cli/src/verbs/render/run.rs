@@ -2,6 +2,7 @@
 
 use gnomon_pipeline::measure::render::{Rendered, render};
 use gnomon_pipeline::measure::wedge_work::WedgeWork;
+use gnomon_pipeline::techniques::Registry;
 
 use super::args::RenderArgs;
 use super::frames;
@@ -14,13 +15,13 @@ use crate::output::tables::{self, Named};
 use crate::output::{self, numbers, warnings};
 
 /// Renders one frame, or an animation, and writes what was asked for.
-pub(crate) fn run(args: &RenderArgs) -> Result<(), CliError> {
+pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError> {
     if let Some(count) = args.frames {
-        return frames::run(args, count);
+        return frames::run(args, registry, count);
     }
     let progress = Progress::new(3 + args.overlay.len() as u64);
     progress.doing("loading the scene");
-    let job = Job::new(args)?;
+    let job = Job::new(args, registry)?;
     progress.step();
     progress.doing("rendering");
     let done = render(&job.scene, job.technique, &job.params, &job.settings)?;
@@ -53,7 +54,7 @@ fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
     text += &tables::work(&frame).to_text();
     text.push('\n');
     text += &tables::traffic(&frame).to_text();
-    if let Some(work) = WedgeWork::of(&done.report) {
+    if let Some(work) = WedgeWork::of(&done.report, &done.roles) {
         text += &format!(
             "\nwedges shaded {} fragments for {} pairs of a pixel and a penumbra that it is in: {:.2} times\n",
             numbers::count(work.shaded),

@@ -2,11 +2,13 @@
 //! would make if its shadows were right. It is in no list; see
 //! [`crate::measure::comparison::shaded`].
 
-use gnomon_raster::{Format, Recording, Subresource, TextureDescriptor};
+use gnomon_raster::{Format, Subresource, TextureDescriptor};
 
-use crate::parts::passes::{LitTest, SceneDraws, Targets};
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::LitTest;
+use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::parts::visibility::VisibilityTexture;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::technique::{Capabilities, Frame, ParamInfo, Params, Technique, TechniqueError};
 use crate::world::scene::Scene;
 
 /// Light number `light` times `values`; no other light shines.
@@ -30,23 +32,29 @@ impl Technique for GivenVisibility<'_> {
         &[]
     }
 
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::UNSHADOWED
+    }
+
     fn frame(
         &self,
         scene: &Scene,
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let targets = Targets::create(size, params, &mut recording)?;
-        let draws = SceneDraws::new(scene, size, params);
+        let settings = FrameSettings {
+            light: Some(self.light),
+            ..FrameSettings::shading_only(params)?
+        };
+        let mut frame = ShadowedFrame::new(scene, size, &settings)?.with_ambient();
         let [width, height] = size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
-        let texture = recording.create(&desc)?;
+        let texture = frame.recording.create(&desc)?;
         let texels: Vec<[f32; 4]> = self.values.iter().map(|v| [*v, 0.0, 0.0, 0.0]).collect();
-        recording.write(texture, Subresource::default(), &texels)?;
+        frame
+            .recording
+            .write(texture, Subresource::default(), &texels)?;
         let visibility = VisibilityTexture::red(texture);
-        let lit = draws.lit_pass(&targets, self.light, "lit", LitTest::Visibility(visibility));
-        let passes = vec![draws.ambient_pass(&targets), lit];
-        targets.frame(recording, passes, visibility.output())
+        frame.lit(LitTest::Visibility(visibility), |_| Ok(Vec::new()))
     }
 }

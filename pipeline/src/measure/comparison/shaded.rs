@@ -17,7 +17,7 @@ pub struct ShadingKey([String; 3]);
 impl ShadingKey {
     /// The key of `params`.
     pub fn of(params: &Params) -> Self {
-        Self(SHADING_PARAMS.map(|name| params.get(name).to_owned()))
+        Self(SHADING_PARAMS.map(|name| params.text(name).unwrap_or_default().to_owned()))
     }
 }
 

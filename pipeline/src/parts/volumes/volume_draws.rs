@@ -7,22 +7,68 @@ use gnomon_raster::{Draw, RenderPipeline, VertexBuffer};
 use gnomon_shaders::transform::HomogeneousPoints;
 
 use super::near_pyramid::{NearPyramid, outside_view};
+use crate::choices;
+use crate::geometry::caster::CasterPolicy;
 use crate::geometry::volume::ShadowVolume;
-use crate::parts::casters::{self, Examined, SKIP};
+use crate::parts::casters::{self, Examined, OPEN_CASTERS, SKIP};
 use crate::parts::passes::{self, View};
-use crate::technique::{CasterUse, ParamInfo, Params, TechniqueError, VolumeMethod, Warning};
+use crate::technique::{
+    CasterUse, Param, ParamInfo, Params, TechniqueError, VolumeMethod, Warning,
+};
 use crate::world::light::HardLight;
 use crate::world::scene::{Object, Scene};
 
-pub(crate) const METHOD: ParamInfo = ParamInfo {
-    name: "method",
-    default: "auto",
-    valid: "auto|zpass|zfail",
-    summary: "auto: z-pass for casters that cannot shadow the near rectangle, z-fail for the others",
-};
+choices! {
+    /// How volumes are counted.
+    pub(crate) enum CountMethod {
+        /// The cheaper one that is right, caster by caster.
+        Auto = "auto",
+        /// Before surfaces.
+        DepthPass = "zpass",
+        /// Beyond surfaces.
+        DepthFail = "zfail",
+    }
+}
+
+pub(crate) const METHOD: Param<CountMethod> = Param::choice(
+    "method",
+    CountMethod::Auto.word(),
+    "auto: z-pass for casters that cannot shadow the near rectangle, z-fail for the others",
+);
+
+impl CountMethod {
+    /// The method for all casters; `None` where each has its own.
+    pub(crate) fn forced(self) -> Option<VolumeMethod> {
+        match self {
+            Self::Auto => None,
+            Self::DepthPass => Some(VolumeMethod::DepthPass),
+            Self::DepthFail => Some(VolumeMethod::DepthFail),
+        }
+    }
+}
+
+/// Settings of techniques that count volumes into the stencil.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct VolumeSettings {
+    method: CountMethod,
+    open_casters: CasterPolicy,
+    skip: bool,
+}
+
+impl VolumeSettings {
+    pub(crate) const PARAMS: &'static [ParamInfo] = &[METHOD.info, OPEN_CASTERS.info, SKIP.info];
+
+    pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            method: params.get(&METHOD)?,
+            open_casters: params.get(&OPEN_CASTERS)?,
+            skip: params.get(&SKIP)?,
+        })
+    }
+}
 
 /// The casters of a scene, examined once for all lights.
-pub(crate) struct Casters<'a> {
+pub(crate) struct VolumeCasters<'a> {
     scene: &'a Scene,
     view: View,
     size: [u32; 2],
@@ -33,7 +79,7 @@ pub(crate) struct Casters<'a> {
 
 /// The volumes of all casters for one light point.
 #[derive(Default)]
-pub(crate) struct Volumes {
+pub(crate) struct CasterVolumes {
     /// One for each caster that is drawn.
     pub(crate) draws: Vec<Draw>,
     /// One for each caster.
@@ -41,29 +87,23 @@ pub(crate) struct Volumes {
     pub(crate) warnings: Vec<Warning>,
 }
 
-impl<'a> Casters<'a> {
-    /// Examines the casters of `scene` for `technique`, which has the parameters
-    /// of this module.
+impl<'a> VolumeCasters<'a> {
+    /// Examines the casters of `scene`.
     ///
     /// # Errors
     /// A caster is not closed and must be.
     pub(crate) fn new(
-        technique: &'static str,
         scene: &'a Scene,
         size: [u32; 2],
-        params: &Params,
+        settings: &VolumeSettings,
     ) -> Result<Self, TechniqueError> {
         Ok(Self {
             scene,
             view: View::new(&scene.camera, size),
             size,
-            method: match params.get(METHOD.name) {
-                "zpass" => Some(VolumeMethod::DepthPass),
-                "zfail" => Some(VolumeMethod::DepthFail),
-                _ => None,
-            },
-            skip: params.get(SKIP.name) != "off",
-            examined: casters::examine(technique, scene, params)?,
+            method: settings.method.forced(),
+            skip: settings.skip,
+            examined: casters::examine(scene, settings.open_casters)?,
         })
     }
 
@@ -74,9 +114,9 @@ impl<'a> Casters<'a> {
         light: usize,
         hard: HardLight,
         color: &[ColorTargetState],
-    ) -> Volumes {
+    ) -> CasterVolumes {
         let pyramid = NearPyramid::new(&self.scene.camera, self.size, hard);
-        let mut built = Volumes::default();
+        let mut built = CasterVolumes::default();
         for Examined {
             number,
             object,

@@ -3,6 +3,3 @@
 
 pub(crate) mod penumbra;
 pub(crate) mod soft;
-
-/// Label of the draws that add the coverage of a wedge to a buffer.
-pub(crate) const COVERAGE_DRAW: &str = "penumbra";

@@ -154,9 +154,10 @@ fn atlas(technique: &'static str, side: u32, tiles: u32) -> Result<Atlas, Techni
     if rows > most {
         return Err(TechniqueError::BadValue {
             technique,
-            key: MAP_SIZE.name,
+            key: MAP_SIZE.info.name,
             value: side.to_string(),
-            valid: "up to 1024 with filter=sat-u32 and m above 8: textures end at 8192 texels",
+            valid: "up to 1024 with filter=sat-u32 and m above 8: textures end at 8192 texels"
+                .to_owned(),
         });
     }
     Ok(Atlas {

@@ -44,15 +44,20 @@ use self::images::{BasisTextures, filtered};
 use self::needed::Needed;
 use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
-use crate::parts::horizon::{HORIZON, Horizon};
+use crate::param_list;
+use crate::parts::frame_settings::FrameSettings;
 use crate::parts::maps::light_view::{
     CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of,
 };
 use crate::parts::maps::lit_tiles::{FurtherLights, LitTiles};
-use crate::parts::maps::mapped::{self, Notes, Said};
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::maps::mapped::{MapNotes, ViewSettings, ViewsOfLight};
+use crate::parts::passes::{LitTest, Targets, View};
+use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, Warning};
+use crate::technique::{
+    Capabilities, Frame, ParamInfo, Params, Pass, PassRole, ShadowKind, Technique, TechniqueError,
+    Warning,
+};
 use crate::world::light::{Light, LightShape};
 use crate::world::scene::Scene;
 
@@ -69,31 +74,15 @@ impl Technique for ConvolutionSoftShadows {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            settings::TERMS,
-            settings::FILTER,
-            settings::EDGES,
-            settings::FORMAT,
-            settings::MAP_SIZE,
-            mapped::NEAR,
-            mapped::VIEW,
-            mapped::FIT,
-            settings::RINGING,
-            settings::OFFSET,
-            settings::STRENGTH,
-            settings::FALLOFF,
-            settings::ITERATE,
-            settings::THRESHOLD,
-            settings::MIP_SHARPER,
-            settings::PROBES,
-            HORIZON,
-            passes::LIGHT,
-            settings::SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            Settings::PARAMS,
+            ViewSettings::PARAMS,
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_light_views(ShadowKind::Soft)
     }
 
     fn frame(
@@ -102,51 +91,32 @@ impl Technique for ConvolutionSoftShadows {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let settings = Settings::new(self.name(), params)?;
-        let draws = SceneDraws::new(scene, size, params);
+        let settings = Settings::read(params)?;
+        let frame = ShadowedFrame::new(scene, size, &settings.frame)?;
+        let frame = frame.with_horizon(self.name(), settings.horizon, false);
+        let (mut frame, positions) = frame.with_positions()?;
+        let recording = &mut frame.recording;
         let shadows = Shadows {
-            scene,
             size,
-            targets: Targets::create(size, params, &mut recording)?,
-            positions: Positions::create(size, &mut recording)?,
-            visibility: visibility_texture(size, &mut recording)?,
-            map: LightMap::create(settings.side, &mut recording)?,
-            images: BasisTextures::create(self.name(), &settings, &mut recording)?,
+            positions,
+            visibility: visibility_texture(size, recording)?,
+            map: LightMap::create(settings.side, recording)?,
+            images: BasisTextures::create(self.name(), &settings, recording)?,
             around: Surroundings::new(scene, size),
-            draws,
+            view: View::new(&scene.camera, size),
             settings,
         };
-        let lights = passes::lights(scene, params)?;
-        let targets = &shadows.targets;
-        let mut list = vec![
-            shadows
-                .draws
-                .ambient_pass_with_positions(targets, &shadows.positions),
-        ];
-        let mut notes = Notes::default();
+        let lights = frame.lights.clone();
+        let (around, view) = (&shadows.around, &shadows.view);
+        let further = FurtherLights::new(scene, around, view, &lights, settings.skip);
         let visibility = VisibilityTexture::red(shadows.visibility);
-        let (around, view) = (&shadows.around, &shadows.draws.view);
-        let further = FurtherLights::new(scene, around, view, &lights, shadows.settings.skip);
-        for &light in lights.iter().rev() {
-            let label = |what: &str| passes::label(what, light, &lights);
-            let viewed = ViewedLight::new(self.name(), &scene.lights[light], light)?;
-            let tiles = further.tiles(light);
-            list.extend(shadows.light_passes(&viewed, tiles.as_ref(), &label, &mut notes));
-            notes
-                .warnings
-                .extend(square_instead(&scene.lights[light], light));
-            let horizon = Horizon::wanted(self.name(), light, &scene.lights[light], false, params)?;
-            list.extend(horizon.pass(label("horizon"), &shadows.draws, targets, visibility));
-            let test = LitTest::Visibility(visibility);
-            list.push(shadows.draws.lit_pass(targets, light, &label("lit"), test));
-        }
-        let mut frame = shadows
-            .targets
-            .frame(recording, list, visibility.output())?;
-        frame.warnings = notes.warnings;
-        frame.figures = notes.figures;
-        Ok(frame)
+        frame.lit(LitTest::Visibility(visibility), |turn| {
+            let (light, number) = (turn.light(), turn.number);
+            let viewed = ViewedLight::new(self.name(), light, number)?;
+            let passes = shadows.light_passes(&viewed, further.tiles(number).as_ref(), turn);
+            turn.notes.warnings.extend(square_instead(light, number));
+            Ok(passes)
+        })
     }
 }
 
@@ -177,11 +147,9 @@ fn square_instead(light: &Light, number: usize) -> Option<Warning> {
 
 /// What all lights of a frame share.
 struct Shadows<'a> {
-    scene: &'a Scene,
     size: [u32; 2],
     settings: Settings,
-    draws: SceneDraws<'a>,
-    targets: Targets,
+    view: View,
     positions: Positions,
     visibility: TextureId,
     map: LightMap,
@@ -195,35 +163,35 @@ impl Shadows<'_> {
         &self,
         light: &ViewedLight,
         tiles: Option<&LitTiles>,
-        label: &dyn Fn(&str) -> String,
-        notes: &mut Notes,
-    ) -> Vec<RenderPass> {
+        turn: &mut LightTurn<'_, '_>,
+    ) -> Vec<Pass> {
+        let label = turn.labels();
+        let shadow_pass = |targets: &Targets, first, draws| {
+            self.shadow_pass(targets, label("look-up"), first, draws)
+        };
+        let mut notes = MapNotes::new(turn.notes, &label);
         if let Some(tiles) = tiles {
-            notes.skipped(tiles, label);
+            notes.skipped(tiles);
             if tiles.is_empty() {
-                return vec![self.shadow_pass(label("look-up"), true, Vec::new())];
+                return vec![shadow_pass(turn.targets, true, Vec::new())];
             }
         }
-        let Settings { views, fitting, .. } = self.settings;
+        let ViewSettings { views, fitting } = self.settings.view;
         let views = views_of(light, &self.around, views, &fitting);
-        let geometry = CasterGeometry::new(
-            self.scene,
-            &self.around,
-            &self.draws.view,
-            light.reference(&self.around),
-        );
-        let (mut list, mut said) = (Vec::new(), Said::default());
+        let reference = light.reference(&self.around);
+        let geometry = CasterGeometry::new(turn.scene, &self.around, &self.view, reference);
+        let (mut list, mut counted) = (Vec::new(), ViewsOfLight::default());
         for fitted in &views {
-            said.add(fitted, self.offset(fitted), self.settings.side);
-            let (passes, draw) = self.view_passes(light, fitted, tiles, &geometry, label);
+            counted.add(fitted, self.offset(fitted), self.settings.side);
+            let (passes, draw) = self.view_passes(light, fitted, tiles, &geometry, &label);
             let first = list.is_empty();
             list.extend(passes);
-            list.push(self.shadow_pass(label("look-up"), first, vec![draw]));
+            list.push(shadow_pass(turn.targets, first, vec![draw]));
         }
         if list.is_empty() {
-            list.push(self.shadow_pass(label("look-up"), true, Vec::new()));
+            list.push(shadow_pass(turn.targets, true, Vec::new()));
         }
-        said.into_notes(0.0, label, notes);
+        notes.add(counted, 0.0);
         list
     }
 
@@ -242,16 +210,21 @@ impl Shadows<'_> {
         tiles: Option<&LitTiles>,
         geometry: &CasterGeometry,
         label: &dyn Fn(&str) -> String,
-    ) -> (Vec<RenderPass>, Draw) {
+    ) -> (Vec<Pass>, Draw) {
         let settings = &self.settings;
         let reads = fitted.reads(&self.around, light.extent);
         let needed = match reads.filter(|_| settings.skip) {
             Some(reads) => Needed::of(&reads, settings.side, settings.filter),
             None => Needed::all(settings.side),
         };
-        let view = label("light view");
-        let mut list =
-            vec![fitted.pass(view, geometry, &self.draws.view, &self.map, settings.skip)];
+        let picture = fitted.pass(
+            label("light view"),
+            geometry,
+            &self.view,
+            &self.map,
+            settings.skip,
+        );
+        let mut list = vec![Pass::new(PassRole::LightView, picture)];
         let prefilter = Prefilter {
             settings,
             images: &self.images,
@@ -259,24 +232,26 @@ impl Shadows<'_> {
             needed: &needed,
         };
         let (passes, images) = prefilter.passes(label);
-        list.extend(passes);
+        let filtered = |pass| Pass::new(PassRole::Prefilter, pass);
+        list.extend(passes.into_iter().map(filtered));
         let draw = self.shadow_draw(self.shader(light, fitted), tiles, images);
         (list, draw)
     }
 
     /// Visibility where something is in the light's way; 1 elsewhere.
-    fn shadow_pass(&self, label: String, clear: bool, draws: Vec<Draw>) -> RenderPass {
+    fn shadow_pass(&self, targets: &Targets, label: String, clear: bool, draws: Vec<Draw>) -> Pass {
         let load = if clear {
             LoadOp::Clear([1.0; 4])
         } else {
             LoadOp::Load
         };
-        RenderPass {
+        let pass = RenderPass {
             label,
             color: vec![attachment(self.visibility, load)],
-            depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
             draws,
-        }
+        };
+        Pass::new(PassRole::LookUp, pass)
     }
 
     /// At every pixel that shows a surface.
@@ -354,7 +329,7 @@ impl Shadows<'_> {
         let settings = &self.settings;
         let series = &self.images.series;
         ConvolutionShadow {
-            mapping: fitted.mapping(&self.draws.view, settings.side),
+            mapping: fitted.mapping(&self.view, settings.side),
             light_half: half.map(|h| h as f32),
             expansion: settings.series.expansion(),
             prefiltered,

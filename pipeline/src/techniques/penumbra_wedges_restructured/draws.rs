@@ -12,94 +12,85 @@ use gnomon_shaders::penumbra::intensity::IntensityRates;
 use gnomon_shaders::penumbra::plane::ScreenPlane;
 use gnomon_shaders::transform::HomogeneousPoints;
 
+use super::InsideDraws;
 use super::list::{LightDraws, Shaded};
-use super::{Builder, Parts};
-use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge};
+use crate::geometry::wedge::paper1::LinkedWedge;
 use crate::parts::casters::Examined;
-use crate::parts::passes;
+use crate::parts::passes::{self, View};
+use crate::parts::shadowed_frame::LightTurn;
 use crate::parts::visibility::binding;
 use crate::parts::wedges::penumbra::hard::{self, Method};
 use crate::parts::wedges::penumbra::light::LightSphere;
-use crate::parts::wedges::penumbra::report::Met;
+use crate::parts::wedges::penumbra::report::LinkedReport;
 use crate::parts::wedges::penumbra::shape::{self, Faces, WedgeShape};
 use crate::parts::wedges::penumbra::volume::SoftVolume;
-use crate::parts::wedges::penumbra::{EXTRA_WEDGES, axes, screen};
+use crate::parts::wedges::penumbra::{axes, screen};
 use crate::technique::CasterUse;
+use crate::world::scene::Scene;
 
-impl Builder<'_> {
-    pub(super) fn hard_light(&self, light: usize, draws: &mut LightDraws, parts: &mut Parts) {
+impl InsideDraws<'_> {
+    pub(super) fn hard_light(&self, turn: &mut LightTurn<'_, '_>, draws: &mut LightDraws) {
         draws.hard = true;
         for caster in self.casters {
-            let view = &self.draws.view;
+            let (scene, view, light) = (turn.scene, turn.view(), turn.number);
             let forced = self.choices.forced;
-            let (draw, used) = hard::draw(self.scene, view, self.size, light, caster, forced);
+            let (draw, used) = hard::draw(scene, view, self.size, light, caster, forced);
             draws.tested.push(draw);
-            parts.uses.push(used);
+            turn.notes.casters.push(used);
         }
     }
 
     pub(super) fn soft_light(
         &self,
-        light: usize,
+        turn: &mut LightTurn<'_, '_>,
         sphere: &LightSphere,
         draws: &mut LightDraws,
-        parts: &mut Parts,
     ) {
-        let mut met = Met::default();
-        let settings = LinkedSettings {
-            extra_wedges: self.params.get(EXTRA_WEDGES.name) != "off",
-            ..LinkedSettings::default()
-        };
+        let mut report = LinkedReport::default();
+        let settings = self.choices.penumbra.linked();
+        let view = turn.view();
         for caster in self.casters {
-            let volume = caster.soft_volume(sphere, &settings, &mut met);
+            let volume = caster.soft_volume(sphere, &settings, &mut report);
             let method = self
                 .choices
                 .forced
-                .unwrap_or_else(|| self.choose(caster, &volume));
+                .unwrap_or_else(|| choose(turn.scene, caster, &volume));
             if method == Method::DepthFail {
-                self.caps(caster, &volume, draws);
+                self.caps(view, caster, &volume, draws);
             }
             for wedge in &volume.wedges {
-                self.wedge(&caster.object.name, wedge, method, draws);
+                self.wedge(view, &caster.object.name, wedge, method, draws);
             }
             for gap in &volume.gaps {
-                let faces = shape::triangles(&self.draws.view, &gap.triangles);
-                let planes = [self.screen.plane(&self.draws.view, &gap.plane); 4];
-                let shader = self.shader(planes, None, Part::Umbra, method);
-                self.umbra("gap", &faces, shader, draws);
+                let faces = shape::triangles(view, &gap.triangles);
+                let planes = [self.screen.plane(view, &gap.plane); 4];
+                let shader = self.shader(view, planes, None, Part::Umbra, method);
+                self.umbra(view, "gap", &faces, shader, draws);
             }
             let bottom = volume.bottom.len();
             let sides = 2 * volume.wedges.len() + volume.gaps.len();
-            parts.uses.push(CasterUse {
+            turn.notes.casters.push(CasterUse {
                 object: caster.number,
-                light,
+                light: turn.number,
                 method: method.reported(),
                 triangles: [volume.cap.len() + volume.patches.len(), bottom, sides],
             });
         }
-        parts.warnings.extend(met.warnings(light));
+        let (light, warnings) = (turn.number, &mut turn.notes.warnings);
+        warnings.extend(report.warnings(light));
         if self.choices.three {
-            parts.warnings.extend(met.stencil_warning(light));
-        }
-    }
-
-    /// z-fail where the eye is in or next to a wedge, or in the umbra.
-    fn choose(&self, caster: &Examined<'_>, volume: &SoftVolume) -> Method {
-        let camera = &self.scene.camera;
-        // Next to: where a wedge's nearest face may be seen edge-on.
-        let margin = camera.near + 1e-4 * (camera.target - camera.eye).length();
-        let in_shadow = volume.may_hold(camera.eye, margin)
-            || volume.winding(&caster.object.mesh, camera.eye) != 0;
-        if in_shadow {
-            Method::DepthFail
-        } else {
-            Method::DepthPass
+            warnings.extend(report.stencil_warning(light));
         }
     }
 
     /// Top, patches and bottom of a volume, for z-fail.
-    fn caps(&self, caster: &Examined<'_>, volume: &SoftVolume, draws: &mut LightDraws) {
-        let view = &self.draws.view;
+    fn caps(
+        &self,
+        view: &View,
+        caster: &Examined<'_>,
+        volume: &SoftVolume,
+        draws: &mut LightDraws,
+    ) {
         let mesh = &caster.object.mesh;
         // The caster's own vertices, as the scene draws them: equal depth.
         let points = mesh.positions().iter().map(|p| view.point(*p));
@@ -126,11 +117,17 @@ impl Builder<'_> {
         }
     }
 
-    fn wedge(&self, label: &str, wedge: &LinkedWedge, method: Method, draws: &mut LightDraws) {
-        let view = &self.draws.view;
+    fn wedge(
+        &self,
+        view: &View,
+        label: &str,
+        wedge: &LinkedWedge,
+        method: Method,
+        draws: &mut LightDraws,
+    ) {
         let shape = WedgeShape::new(view, wedge);
         let planes = self.screen.wedge(view, wedge);
-        let shader = |part| self.shader(planes, Some(wedge), part, method);
+        let shader = |part| self.shader(view, planes, Some(wedge), part, method);
         // Faces through which the penumbra is drawn, and the other facing.
         let (drawn, other) = match method {
             Method::DepthPass => (CullMode::Back, CullMode::Front),
@@ -143,21 +140,29 @@ impl Builder<'_> {
                     (&shape.front, other, Part::Umbra),
                     (others, drawn, Part::Penumbra),
                 ];
-                let shaded = all.map(|(f, cull, part)| self.shaded(label, f, cull, shader(part)));
+                let shaded =
+                    all.map(|(f, cull, part)| self.shaded(view, label, f, cull, shader(part)));
                 draws.intensity.extend(shaded);
             }
             _ => {
-                self.umbra(label, &shape.front, shader(Part::Umbra), draws);
-                let penumbra = self.shaded(label, &shape.all, drawn, shader(Part::Penumbra));
+                self.umbra(view, label, &shape.front, shader(Part::Umbra), draws);
+                let penumbra = self.shaded(view, label, &shape.all, drawn, shader(Part::Penumbra));
                 draws.intensity.push(penumbra);
             }
         }
     }
 
     /// A boundary of the umbra by itself.
-    fn umbra(&self, label: &str, faces: &Faces, shader: WedgeInside, draws: &mut LightDraws) {
+    fn umbra(
+        &self,
+        view: &View,
+        label: &str,
+        faces: &Faces,
+        shader: WedgeInside,
+        draws: &mut LightDraws,
+    ) {
         if !self.choices.three {
-            let draw = self.shaded(label, faces, CullMode::None, shader);
+            let draw = self.shaded(view, label, faces, CullMode::None, shader);
             draws.intensity.push(draw);
             return;
         }
@@ -171,7 +176,7 @@ impl Builder<'_> {
             .iter_mut()
             .zip([CullMode::Back, CullMode::Front])
         {
-            let mut pipeline = self.pipeline(cull, &shader);
+            let mut pipeline = pipeline(view, cull, &shader);
             pipeline.color_targets.clear();
             pipeline.depth_stencil.stencil = counted(method);
             let draw = faces.draw(label, pipeline, self.bindings());
@@ -181,13 +186,13 @@ impl Builder<'_> {
 
     fn shader(
         &self,
+        view: &View,
         planes: [ScreenPlane; 4],
         wedge: Option<&LinkedWedge>,
         part: Part,
         method: Method,
     ) -> WedgeInside {
-        let view = &self.draws.view;
-        let interpolation = self.choices.interpolation;
+        let interpolation = self.choices.penumbra.interpolation;
         let mut tiles = self.choices.tiles.clone();
         if let Some(wedge) = wedge.filter(|_| part != Part::Umbra) {
             let wanted = self.choices.axes;
@@ -212,33 +217,54 @@ impl Builder<'_> {
         }
     }
 
-    fn shaded(&self, label: &str, faces: &Faces, cull: CullMode, shader: WedgeInside) -> Shaded {
-        let pipeline = self.pipeline(cull, &shader);
+    fn shaded(
+        &self,
+        view: &View,
+        label: &str,
+        faces: &Faces,
+        cull: CullMode,
+        shader: WedgeInside,
+    ) -> Shaded {
+        let pipeline = pipeline(view, cull, &shader);
         let draw = faces.draw(label, pipeline, self.bindings());
         (draw, Some(shader))
     }
 
-    fn pipeline(&self, cull_mode: CullMode, shader: &WedgeInside) -> RenderPipeline {
-        let label = match shader.part {
-            Part::Umbra => "umbra",
-            Part::Penumbra => "penumbra",
-            Part::Both => "umbra and penumbra",
-        };
-        RenderPipeline {
-            label: label.to_owned(),
-            vertex: HomogeneousPoints(self.draws.view.clip_from_world).stage(),
-            fragment: Some(shader.clone().stage()),
-            primitive: PrimitiveState {
-                cull_mode,
-                ..passes::clamped()
-            },
-            depth_stencil: DepthStencilState::default(),
-            color_targets: vec![ColorTargetState::ADDITIVE],
-        }
-    }
-
     fn bindings(&self) -> Vec<TextureBinding> {
         self.inputs.iter().map(|&t| binding(t)).collect()
+    }
+}
+
+/// z-fail where the eye is in or next to a wedge, or in the umbra.
+fn choose(scene: &Scene, caster: &Examined<'_>, volume: &SoftVolume) -> Method {
+    let camera = &scene.camera;
+    // Next to: where a wedge's nearest face may be seen edge-on.
+    let margin = camera.near + 1e-4 * (camera.target - camera.eye).length();
+    let in_shadow =
+        volume.may_hold(camera.eye, margin) || volume.winding(&caster.object.mesh, camera.eye) != 0;
+    if in_shadow {
+        Method::DepthFail
+    } else {
+        Method::DepthPass
+    }
+}
+
+fn pipeline(view: &View, cull_mode: CullMode, shader: &WedgeInside) -> RenderPipeline {
+    let label = match shader.part {
+        Part::Umbra => "umbra",
+        Part::Penumbra => "penumbra",
+        Part::Both => "umbra and penumbra",
+    };
+    RenderPipeline {
+        label: label.to_owned(),
+        vertex: HomogeneousPoints(view.clip_from_world).stage(),
+        fragment: Some(shader.clone().stage()),
+        primitive: PrimitiveState {
+            cull_mode,
+            ..passes::clamped()
+        },
+        depth_stencil: DepthStencilState::default(),
+        color_targets: vec![ColorTargetState::ADDITIVE],
     }
 }
 

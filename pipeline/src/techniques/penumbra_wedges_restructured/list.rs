@@ -10,12 +10,13 @@ use gnomon_shaders::penumbra::buffers::{StencilCounts, TileDepths};
 use gnomon_shaders::penumbra::inside::{Culling, WedgeInside};
 use gnomon_shaders::transform::FullScreen;
 
-use super::{Builder, Choices, PASSES, Parts, WedgeDraw};
+use super::{Choices, InsideDraws, WedgeDraw};
 use crate::parts::passes::Targets;
+use crate::parts::shadowed_frame::LightTurn;
 use crate::parts::visibility::{attachment, binding, full_screen};
 use crate::parts::wedges::penumbra;
 use crate::parts::wedges::penumbra::light::{self, LightSphere};
-use crate::technique::{Params, TechniqueError};
+use crate::technique::{Pass, PassRole, TechniqueError};
 
 /// A draw with the wedge shader that it runs, if it does.
 pub(super) type Shaded = (Draw, Option<WedgeInside>);
@@ -33,79 +34,97 @@ pub(super) struct LightDraws {
     pub(super) hard: bool,
 }
 
-impl Builder<'_> {
+impl InsideDraws<'_> {
+    /// The passes of a light; `wedge_draws` gets the wedge shaders in them.
     pub(super) fn light_passes(
         &self,
-        light: usize,
         buffer: TextureId,
-        named: Named<'_>,
-        parts: &mut Parts,
-    ) -> Vec<RenderPass> {
-        let source = &self.scene.lights[light];
-        parts.warnings.extend(light::substitution(light, source));
+        turn: &mut LightTurn<'_, '_>,
+        wedge_draws: &mut Vec<WedgeDraw>,
+    ) -> Vec<Pass> {
+        let (light, source) = (turn.number, turn.light());
+        turn.notes
+            .warnings
+            .extend(light::substitution(light, source));
         let mut draws = LightDraws::default();
         match LightSphere::of(source) {
-            None => self.hard_light(light, &mut draws, parts),
-            Some(sphere) => self.soft_light(light, &sphere, &mut draws, parts),
+            None => self.hard_light(turn, &mut draws),
+            Some(sphere) => self.soft_light(turn, &sphere, &mut draws),
         }
         let three = self.choices.three && !draws.hard;
-        let passes = if three {
-            self.three_passes(buffer, draws, named)
+        let list = if three {
+            self.three_passes(buffer, draws, turn)
         } else {
-            self.single_pass(buffer, draws, named)
+            self.single_pass(buffer, draws, turn)
         };
-        note(passes, parts)
+        note(list, turn.passes_before, wedge_draws)
     }
 
     /// Umbra and penumbra in the light-intensity buffer from the first.
-    fn single_pass(&self, buffer: TextureId, draws: LightDraws, named: Named<'_>) -> Vec<Pass> {
+    fn single_pass(
+        &self,
+        buffer: TextureId,
+        draws: LightDraws,
+        turn: &LightTurn<'_, '_>,
+    ) -> Vec<Shading> {
         let mut list = Vec::new();
         let mut load = penumbra::cleared(FULL);
         // A light without wedges still needs its buffer cleared.
         if draws.hard || !draws.tested.is_empty() {
-            let label = named(if draws.hard { "volumes" } else { "umbra caps" });
+            let (role, what) = match draws.hard {
+                true => (PassRole::Volumes, "volumes"),
+                false => (PassRole::UmbraCaps, "umbra caps"),
+            };
+            let label = turn.label(what);
             let mut pass = penumbra::intensity_pass(label, buffer, load);
-            pass.depth_stencil = self.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
+            pass.depth_stencil = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
             pass.draws = draws.tested;
-            list.push((pass, Vec::new()));
+            list.push(Shading::plain(role, pass));
             load = LoadOp::Load;
         }
         if !draws.hard {
-            let pass = penumbra::intensity_pass(named("wedges"), buffer, load);
-            list.push(filled(pass, draws.intensity));
+            let pass = penumbra::intensity_pass(turn.label("wedges"), buffer, load);
+            list.push(Shading::of(PassRole::Wedges, pass, draws.intensity));
         }
         list
     }
 
     /// The umbra by facing into a stencil, then its counts and the penumbrae into
     /// the light-intensity buffer.
-    fn three_passes(&self, buffer: TextureId, draws: LightDraws, named: Named<'_>) -> Vec<Pass> {
+    fn three_passes(
+        &self,
+        buffer: TextureId,
+        draws: LightDraws,
+        turn: &LightTurn<'_, '_>,
+    ) -> Vec<Shading> {
         let mut list = Vec::new();
         let mut counts: Vec<TextureId> = self.umbra_stencil.into_iter().collect();
         let only_stencil = |label: &str, depth_stencil| RenderPass {
-            label: named(label),
+            label: turn.label(label),
             color: Vec::new(),
             depth_stencil,
             draws: Vec::new(),
         };
         if !draws.tested.is_empty() {
-            let scene = self.targets.depth_stencil(LoadOp::Load, LoadOp::Clear(0));
+            let scene = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Clear(0));
             let mut pass = only_stencil("umbra caps", scene);
             pass.draws = draws.tested;
-            list.push((pass, Vec::new()));
-            counts.push(self.targets.depth_texture());
+            list.push(Shading::plain(PassRole::UmbraCaps, pass));
+            counts.push(turn.targets.depth_texture());
         }
         let [front, back] = draws.umbra;
         let front_stencil = self.umbra_attachment(LoadOp::Clear(0));
-        list.push(filled(only_stencil("umbra front", front_stencil), front));
+        let pass = only_stencil("umbra front", front_stencil);
+        list.push(Shading::of(PassRole::UmbraStencil, pass, front));
         let back_stencil = self.umbra_attachment(LoadOp::Load);
-        list.push(filled(only_stencil("umbra back", back_stencil), back));
+        let pass = only_stencil("umbra back", back_stencil);
+        list.push(Shading::of(PassRole::UmbraStencil, pass, back));
         let full = penumbra::cleared(FULL);
-        let mut pass = penumbra::intensity_pass(named("umbra counts"), buffer, full);
+        let mut pass = penumbra::intensity_pass(turn.label("umbra counts"), buffer, full);
         pass.draws = vec![add_counts(&counts)];
-        list.push((pass, Vec::new()));
-        let pass = penumbra::intensity_pass(named("penumbra"), buffer, LoadOp::Load);
-        list.push(filled(pass, draws.intensity));
+        list.push(Shading::plain(PassRole::UmbraCounts, pass));
+        let pass = penumbra::intensity_pass(turn.label("penumbra"), buffer, LoadOp::Load);
+        list.push(Shading::of(PassRole::Wedges, pass, draws.intensity));
         list
     }
 
@@ -121,31 +140,47 @@ impl Builder<'_> {
     }
 }
 
-/// Names a pass of the light.
-type Named<'a> = &'a dyn Fn(&str) -> String;
-
 /// A pass, and the wedge shaders of its draws.
-type Pass = (RenderPass, Vec<Option<WedgeInside>>);
-
-fn filled(mut pass: RenderPass, draws: Vec<Shaded>) -> Pass {
-    let (draws, shaders) = draws.into_iter().unzip();
-    pass.draws = draws;
-    (pass, shaders)
+struct Shading {
+    pass: Pass,
+    shaders: Vec<Option<WedgeInside>>,
 }
 
-/// Notes where the wedge shaders are, and takes them off.
-fn note(list: Vec<Pass>, parts: &mut Parts) -> Vec<RenderPass> {
-    for (p, (_, shaders)) in list.iter().enumerate() {
-        for (d, shader) in shaders.iter().enumerate() {
-            parts
-                .wedge_draws
-                .extend(shader.clone().map(|shader| WedgeDraw {
-                    at: [parts.offset + p, d],
-                    shader,
-                }));
+impl Shading {
+    /// Without wedge shaders.
+    fn plain(role: PassRole, pass: RenderPass) -> Self {
+        Self {
+            pass: Pass::new(role, pass),
+            shaders: Vec::new(),
         }
     }
-    list.into_iter().map(|(pass, _)| pass).collect()
+
+    /// `pass` with these draws.
+    fn of(role: PassRole, mut pass: RenderPass, draws: Vec<Shaded>) -> Self {
+        let (draws, shaders) = draws.into_iter().unzip();
+        pass.draws = draws;
+        Self {
+            pass: Pass::new(role, pass),
+            shaders,
+        }
+    }
+}
+
+/// Notes where the wedge shaders are, behind `passes_before` other passes, and takes
+/// them off.
+fn note(list: Vec<Shading>, passes_before: usize, wedge_draws: &mut Vec<WedgeDraw>) -> Vec<Pass> {
+    let mut passes = Vec::with_capacity(list.len());
+    for Shading { pass, shaders } in list {
+        let at = passes_before + passes.len();
+        for (draw, shader) in shaders.into_iter().enumerate() {
+            wedge_draws.extend(shader.map(|shader| WedgeDraw {
+                at: [at, draw],
+                shader,
+            }));
+        }
+        passes.push(pass);
+    }
+    passes
 }
 
 /// Adds 255 times the stencil counts of `textures` everywhere.
@@ -171,7 +206,7 @@ pub(super) fn tile_depths(
     targets: &Targets,
     size: [u32; 2],
     recording: &mut Recording,
-) -> Result<Option<(RenderPass, Vec<TextureId>)>, TechniqueError> {
+) -> Result<Option<(Pass, Vec<TextureId>)>, TechniqueError> {
     let names: &[&str] = match choices.tiles.culling {
         Culling::None => return Ok(None),
         Culling::Zmax => &["zmax"],
@@ -202,16 +237,16 @@ pub(super) fn tile_depths(
             vec![binding(targets.depth_texture())],
         )],
     };
-    Ok(Some((pass, bounds)))
+    Ok(Some((Pass::new(PassRole::TileDepths, pass), bounds)))
 }
 
 /// The stencil of the three-pass algorithm; its depth is not used.
 pub(super) fn umbra_stencil(
-    params: &Params,
+    choices: &Choices,
     [width, height]: [u32; 2],
     recording: &mut Recording,
 ) -> Result<Option<TextureId>, TechniqueError> {
-    if params.get(PASSES.name) != "three" {
+    if !choices.three {
         return Ok(None);
     }
     let format = Format::Depth24Stencil8;

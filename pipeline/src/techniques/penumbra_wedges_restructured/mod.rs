@@ -49,56 +49,94 @@
 mod draws;
 mod list;
 
-use gnomon_raster::{Recording, TextureId};
+use gnomon_raster::TextureId;
 use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, TileTest, WedgeInside};
-use gnomon_shaders::penumbra::intensity::Interpolation;
 
-use crate::parts::casters::{self, Examined, OPEN_CASTERS};
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::parts::casters::{self, Examined};
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::LitTest;
+use crate::parts::shadowed_frame::ShadowedFrame;
+use crate::parts::volumes::volume_draws::CountMethod;
 use crate::parts::wedges::penumbra::hard::Method;
 use crate::parts::wedges::penumbra::screen::Screen;
-use crate::parts::wedges::penumbra::{self, EXTRA_WEDGES, INTERPOLATION};
-use crate::technique::{CasterUse, Frame, ParamInfo, Params, Technique, TechniqueError, Warning};
+use crate::parts::wedges::penumbra::{self, PenumbraSettings};
+use crate::technique::{
+    Capabilities, Choice, Condition, Frame, LightFact, Param, ParamInfo, Params, SceneWedges,
+    ShadowKind, Technique, TechniqueError, WedgeUse,
+};
 use crate::world::scene::Scene;
+use crate::{choices, param_list};
 
 /// The registry's entry.
 pub(crate) struct PenumbraWedgesRestructured;
 
-const METHOD: ParamInfo = ParamInfo {
-    name: "method",
-    default: "auto",
-    valid: "auto|zpass|zfail",
-    summary: "auto: z-pass for casters whose penumbra and umbra the eye is outside of, else z-fail",
-};
+const METHOD: Param<CountMethod> = Param::choice(
+    "method",
+    CountMethod::Auto.word(),
+    "auto: z-pass for casters whose penumbra and umbra the eye is outside of, else z-fail",
+);
 
-const PASSES: ParamInfo = ParamInfo {
-    name: "passes",
-    default: "single",
-    valid: "single|three",
-    summary: "umbra and penumbra of front planes at once, or umbra by two stencil passes; same bits",
-};
+choices! {
+    /// How umbra and penumbra are drawn.
+    enum PassCount {
+        /// At once.
+        Single = "single",
+        /// The umbra by two stencil passes.
+        Three = "three",
+    }
+}
 
-const CULLING: ParamInfo = ParamInfo {
-    name: "culling",
-    default: "zminmax",
-    valid: "none|zmax|zminmax",
-    summary: "what is known of a tile's depths when it is culled; same bits",
-};
+const PASSES: Param<PassCount> = Param::choice(
+    "passes",
+    PassCount::Single.word(),
+    "umbra and penumbra of front planes at once, or umbra by two stencil passes; same bits",
+)
+.when(Condition::Lights(LightFact::Extended));
 
-const TILE: ParamInfo = ParamInfo {
-    name: "tile",
-    default: "8",
-    valid: "2|4|8|16|32|64|128|256",
-    summary: "side in pixels of the modelled tiles that are culled; same bits",
-};
+impl Choice for Culling {
+    const NAMES: &'static [&'static str] = &["none", "zmax", "zminmax"];
+    const ALL: &'static [Self] = &[Self::None, Self::Zmax, Self::ZminZmax];
+}
 
-const AXES: ParamInfo = ParamInfo {
-    name: "separating-axis",
-    default: "faces",
-    valid: "faces|range-faces|range|full",
-    summary: "tiles against the wedge's planes, its range of depth first, that range alone, \
-              or all separating axes; same bits",
-};
+const CULLING: Param<Culling> = Param::choice(
+    "culling",
+    "zminmax",
+    "what is known of a tile's depths when it is culled; same bits",
+);
+
+const TILE: Param<u32> = Param::<u32>::power_of_two(
+    "tile",
+    8,
+    [2, 256],
+    "side in pixels of the modelled tiles that are culled; same bits",
+)
+.unit("pixels")
+.when(Condition::Not("culling", &["none"]));
+
+choices! {
+    /// What tiles are tested against.
+    enum SeparatingAxis {
+        /// The wedge's planes.
+        Faces = "faces",
+        /// Its range of depth, then its planes.
+        RangeFaces = "range-faces",
+        /// Its range of depth.
+        Range = "range",
+        /// All separating axes.
+        Full = "full",
+    }
+}
+
+const AXES: Param<SeparatingAxis> = Param::choice(
+    "separating-axis",
+    SeparatingAxis::Faces.word(),
+    "tiles against the wedge's planes, its range of depth first, that range alone, \
+     or all separating axes; same bits",
+)
+.when(Condition::All(&[
+    Condition::Not("culling", &["none"]),
+    Condition::Lights(LightFact::Extended),
+]));
 
 impl Technique for PenumbraWedgesRestructured {
     fn name(&self) -> &'static str {
@@ -110,21 +148,18 @@ impl Technique for PenumbraWedgesRestructured {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            METHOD,
-            PASSES,
-            CULLING,
-            TILE,
-            AXES,
-            INTERPOLATION,
-            EXTRA_WEDGES,
-            OPEN_CASTERS,
-            passes::LIGHT,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[METHOD.info, PASSES.info, CULLING.info, TILE.info, AXES.info],
+            PenumbraSettings::PARAMS,
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            wedges: WedgeUse::Linked,
+            ..Capabilities::of_silhouettes(ShadowKind::Soft)
+        }
     }
 
     fn frame(
@@ -134,6 +169,14 @@ impl Technique for PenumbraWedgesRestructured {
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
         build(scene, size, params).map(|built| built.frame)
+    }
+
+    fn wedges(
+        &self,
+        scene: &Scene,
+        params: &Params,
+    ) -> Result<Option<SceneWedges>, TechniqueError> {
+        penumbra::scene_wedges(scene, params).map(Some)
     }
 }
 
@@ -158,55 +201,39 @@ pub(crate) fn build(
     size: [u32; 2],
     params: &Params,
 ) -> Result<Built, TechniqueError> {
-    let mut recording = Recording::default();
-    let targets = Targets::create(size, params, &mut recording)?;
-    let draws = SceneDraws::new(scene, size, params);
-    let casters = casters::examine(PenumbraWedgesRestructured.name(), scene, params)?;
-    let lights = passes::lights(scene, params)?;
-    let choices = Choices::new(params, size);
-    let mut list = vec![draws.ambient_pass(&targets)];
-    let mut inputs = vec![targets.depth_texture()];
-    if let Some((pass, bounds)) = list::tile_depths(&choices, &targets, size, &mut recording)? {
-        list.push(pass);
+    let choices = Choices::read(params, size)?;
+    let casters = casters::examine(scene, choices.penumbra.open_casters)?;
+    let mut frame = ShadowedFrame::new(scene, size, &choices.penumbra.frame)?.with_ambient();
+    let mut inputs = vec![frame.targets.depth_texture()];
+    if let Some((pass, bounds)) =
+        list::tile_depths(&choices, &frame.targets, size, &mut frame.recording)?
+    {
+        frame.push(pass);
         inputs.extend(bounds);
     }
-    let builder = Builder {
-        scene,
+    let draws = InsideDraws {
         size,
-        params,
-        targets: &targets,
-        draws: &draws,
         casters: &casters,
-        screen: Screen::new(&draws.view, size),
-        choices,
+        screen: Screen::new(&frame.draws.view, size),
         inputs,
-        umbra_stencil: list::umbra_stencil(params, size, &mut recording)?,
+        umbra_stencil: list::umbra_stencil(&choices, size, &mut frame.recording)?,
+        choices,
     };
-    let mut built = Parts::default();
-    let buffer = penumbra::light_intensity(size, &mut recording)?;
+    let buffer = penumbra::light_intensity(size, &mut frame.recording)?;
     let visibility = penumbra::visibility(buffer);
-    for &light in lights.iter().rev() {
-        let named = |what: &str| passes::label(what, light, &lights);
-        built.offset = list.len();
-        list.extend(builder.light_passes(light, buffer, &named, &mut built));
-        let label = named("not receiving");
-        list.extend(penumbra::not_receiving_pass(
-            label, buffer, &targets, &draws,
+    let mut wedge_draws = Vec::new();
+    let frame = frame.lit(LitTest::Visibility(visibility), |light| {
+        let mut passes = draws.light_passes(buffer, light, &mut wedge_draws);
+        let label = light.label("not receiving");
+        passes.extend(penumbra::not_receiving_pass(
+            label,
+            buffer,
+            light.targets,
+            light.draws,
         ));
-        list.push(draws.lit_pass(
-            &targets,
-            light,
-            &named("lit"),
-            LitTest::Visibility(visibility),
-        ));
-    }
-    let mut frame = targets.frame(recording, list, visibility.output())?;
-    frame.warnings = built.warnings;
-    frame.casters = built.uses;
-    Ok(Built {
-        frame,
-        wedge_draws: built.wedge_draws,
-    })
+        Ok(passes)
+    })?;
+    Ok(Built { frame, wedge_draws })
 }
 
 /// Tests of tiles besides the wedge's planes.
@@ -222,30 +249,24 @@ struct Choices {
     three: bool,
     tiles: TileTest,
     axes: Axes,
-    interpolation: Interpolation,
+    penumbra: PenumbraSettings,
 }
 
 impl Choices {
-    fn new(params: &Params, size: [u32; 2]) -> Self {
-        let culling = match params.get(CULLING.name) {
-            "none" => Culling::None,
-            "zmax" => Culling::Zmax,
-            _ => Culling::ZminZmax,
-        };
-        let tile: u32 = params.get(TILE.name).parse().unwrap_or(8);
-        let axes = params.get(AXES.name);
-        Self {
-            forced: match params.get(METHOD.name) {
-                "zpass" => Some(Method::DepthPass),
-                "zfail" => Some(Method::DepthFail),
-                _ => None,
+    fn read(params: &Params, size: [u32; 2]) -> Result<Self, TechniqueError> {
+        let axes = params.get(&AXES)?;
+        Ok(Self {
+            forced: match params.get(&METHOD)? {
+                CountMethod::Auto => None,
+                CountMethod::DepthPass => Some(Method::DepthPass),
+                CountMethod::DepthFail => Some(Method::DepthFail),
             },
-            three: params.get(PASSES.name) == "three",
+            three: params.get(&PASSES)? == PassCount::Three,
             tiles: TileTest {
-                culling,
-                shift: tile.trailing_zeros(),
+                culling: params.get(&CULLING)?,
+                shift: params.get(&TILE)?.trailing_zeros(),
                 size,
-                outside: if axes == "range" {
+                outside: if axes == SeparatingAxis::Range {
                     OutsideTest::WithoutPlanes
                 } else {
                     OutsideTest::Planes
@@ -253,31 +274,17 @@ impl Choices {
                 ..TileTest::default()
             },
             axes: Axes {
-                range: axes != "faces",
-                edges: axes == "full",
+                range: axes != SeparatingAxis::Faces,
+                edges: axes == SeparatingAxis::Full,
             },
-            interpolation: penumbra::interpolation(params),
-        }
+            penumbra: PenumbraSettings::read(params)?,
+        })
     }
 }
 
-/// What accumulates over lights.
-#[derive(Default)]
-struct Parts {
-    warnings: Vec<Warning>,
-    uses: Vec<CasterUse>,
-    wedge_draws: Vec<WedgeDraw>,
-    /// Number of passes before those of the light.
-    offset: usize,
-}
-
-/// What the passes of all lights share.
-struct Builder<'a> {
-    scene: &'a Scene,
+/// What the draws of all lights share.
+struct InsideDraws<'a> {
     size: [u32; 2],
-    params: &'a Params,
-    targets: &'a Targets,
-    draws: &'a SceneDraws<'a>,
     casters: &'a [Examined<'a>],
     screen: Screen,
     choices: Choices,

@@ -7,10 +7,9 @@ use gnomon_raster::{
 use gnomon_shaders::soft_volumes::Resolve;
 use gnomon_shaders::transform::FullScreen;
 
-use super::{BUFFER, COPY_BACK};
+use super::{Buffer, SoftVolumesSettings};
 use crate::parts::visibility::{VisibilityTexture, attachment, binding, full_screen};
-use crate::parts::wedges::soft::covering::light_image;
-use crate::technique::{Params, TechniqueError};
+use crate::technique::TechniqueError;
 
 /// Textures that coverage is added up in.
 pub(super) struct Buffers {
@@ -27,15 +26,15 @@ pub(super) struct Buffers {
 impl Buffers {
     pub(super) fn create(
         [width, height]: [u32; 2],
-        params: &Params,
+        settings: &SoftVolumesSettings,
         recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
         let mut create = |label: &str, format| {
             recording.create(&TextureDescriptor::d2(label, format, width, height))
         };
-        let bytes = params.get(BUFFER.name) == "rgba8x2";
-        let aside = !bytes && params.get(COPY_BACK.name) == "on";
-        let coloured = light_image(params).is_some();
+        let bytes = settings.buffer == Buffer::Rgba8x2;
+        let aside = settings.copy_back;
+        let coloured = settings.covering.image.is_some();
         let float = if coloured {
             Format::Rgba32Float
         } else {

@@ -20,52 +20,80 @@
 mod buffers;
 mod volumes;
 
-use crate::parts::casters::{OPEN_CASTERS, SKIP};
-use crate::parts::horizon::{HORIZON, Horizon};
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
-use crate::parts::visibility::Positions;
-use crate::parts::wedges::soft::covering::{
-    BACKEND, Coverings, LIGHT_FRAME, LIGHT_IMAGE, TEXTURE_CENTRED, TEXTURE_FILTER, TEXTURE_SIZE,
-    light_image,
-};
-use crate::parts::wedges::soft::edges::Casters;
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::LitTest;
+use crate::parts::shadowed_frame::ShadowedFrame;
+use crate::parts::wedges::soft::covering::{CoveringSettings, Coverings};
+use crate::parts::wedges::soft::edges::SoftCasters;
 use crate::parts::wedges::soft::light::SoftLight;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings, WEDGE};
+use crate::technique::{
+    Capabilities, Condition, Frame, LightFact, Param, ParamInfo, Params, Pass, PassRole,
+    SceneWedges, ShadowKind, Technique, TechniqueError, WedgeUse,
+};
 use crate::world::scene::Scene;
+use crate::{choices, param_list};
 use buffers::Buffers;
-use gnomon_raster::Recording;
-use volumes::Volumes;
+use volumes::LightVolumes;
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumes;
 
-pub(super) const WEDGE: ParamInfo = ParamInfo {
-    name: "wedge",
-    default: "exact",
-    valid: "exact|paper3|paper4",
-    summary: "penumbra wedges: the penumbra itself, or as papers III and IV build them; same bits",
-};
+choices! {
+    /// What visibility is added up in.
+    enum Buffer {
+        /// A float.
+        R32f = "r32f",
+        /// 6 of 8 bits to add and to take.
+        Rgba8x2 = "rgba8x2",
+    }
+}
 
-const BUFFER: ParamInfo = ParamInfo {
-    name: "buffer",
-    default: "r32f",
-    valid: "r32f|rgba8x2",
-    summary: "visibility in a float, or 6 of 8 bits to add and to take",
-};
+const BUFFER: Param<Buffer> = Param::choice(
+    "buffer",
+    Buffer::R32f.word(),
+    "visibility in a float, or 6 of 8 bits to add and to take",
+);
 
-const COPY_BACK: ParamInfo = ParamInfo {
-    name: "copy-back",
-    default: "off",
-    valid: "on|off",
-    summary: "with r32f: no float blending, each wedge reads, writes aside and copies back",
-};
+const COPY_BACK: Param<bool> = Param::switch(
+    "copy-back",
+    false,
+    "with r32f: no float blending, each wedge reads, writes aside and copies back",
+)
+.when(Condition::All(&[
+    Condition::Is("buffer", &["r32f"]),
+    Condition::Lights(LightFact::Extended),
+]));
 
-pub(super) const SPHERE: ParamInfo = ParamInfo {
-    name: "sphere",
-    default: "seen",
-    valid: "seen|equator",
-    summary: "a sphere as the disc that it looks like, or as one of its own radius",
-};
+/// What parameters decide.
+struct SoftVolumesSettings {
+    covering: CoveringSettings,
+    buffer: Buffer,
+    copy_back: bool,
+    soft: SoftSettings,
+}
+
+impl SoftVolumesSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        let settings = Self {
+            covering: CoveringSettings::read(params)?,
+            buffer: params.get(&BUFFER)?,
+            copy_back: params.get(&COPY_BACK)?,
+            soft: SoftSettings::read(params)?,
+        };
+        if settings.copy_back && settings.buffer == Buffer::Rgba8x2 {
+            return Err(TechniqueError::Contradiction {
+                technique: params.technique(),
+                settings: [
+                    (BUFFER.info.name, settings.buffer.word().to_owned()),
+                    (COPY_BACK.info.name, "on".to_owned()),
+                ],
+                why: "8-bit buffers are blended; copying back stands in for the blending of floats",
+            });
+        }
+        Ok(settings)
+    }
+}
 
 impl Technique for SoftShadowVolumes {
     fn name(&self) -> &'static str {
@@ -77,26 +105,21 @@ impl Technique for SoftShadowVolumes {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            WEDGE,
-            BACKEND,
-            TEXTURE_SIZE,
-            TEXTURE_FILTER,
-            TEXTURE_CENTRED,
-            LIGHT_IMAGE,
-            LIGHT_FRAME,
-            BUFFER,
-            COPY_BACK,
-            SPHERE,
-            HORIZON,
-            OPEN_CASTERS,
-            passes::LIGHT,
-            SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[WEDGE.info],
+            CoveringSettings::PARAMS,
+            &[BUFFER.info, COPY_BACK.info],
+            SoftSettings::PARAMS,
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            wedges: WedgeUse::Single,
+            lights: SOFT_LIGHTS,
+            ..Capabilities::of_silhouettes(ShadowKind::Soft)
+        }
     }
 
     fn frame(
@@ -105,42 +128,45 @@ impl Technique for SoftShadowVolumes {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let targets = Targets::create(size, params, &mut recording)?;
-        let positions = Positions::create(size, &mut recording)?;
-        let buffers = Buffers::create(size, params, &mut recording)?;
-        let draws = SceneDraws::new(scene, size, params);
-        let casters = Casters::new(self.name(), scene, params)?;
-        let lights = passes::lights(scene, params)?;
-        let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
-        let mut warnings = Vec::new();
+        let settings = SoftVolumesSettings::read(params)?;
+        let soft = settings.soft;
+        let has_image = settings.covering.image.is_some();
+        let casters = SoftCasters::new(scene, soft.open_casters)?;
+        let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
+        let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
+        let (mut frame, positions) = frame.with_positions()?;
+        let buffers = Buffers::create(size, &settings, &mut frame.recording)?;
         let mut coverings = Coverings::default();
-        for &light in lights.iter().rev() {
-            let seen = params.get(SPHERE.name) != "equator";
-            let shape = &scene.lights[light];
-            let soft = SoftLight::new(self.name(), shape, light, &draws.view, seen)?;
-            let silhouettes = casters.silhouettes(soft.centre);
-            let mut volumes = Volumes {
-                view: &draws.view,
-                targets: &targets,
+        frame.lit(LitTest::Visibility(buffers.visibility()), |turn| {
+            let number = turn.number;
+            let light =
+                SoftLight::new(self.name(), turn.light(), number, turn.view(), soft.seen())?;
+            let silhouettes = casters.silhouettes(light.centre);
+            let covering = &settings.covering;
+            let mut volumes = LightVolumes {
+                view: turn.view(),
+                targets: turn.targets,
                 positions,
                 buffers: &buffers,
-                light: &soft,
-                params,
-                covering: coverings.of(self.name(), &soft, light, params, &mut recording)?,
+                light: &light,
+                settings: &soft,
+                covering: coverings.of(self.name(), &light, number, covering, turn.recording)?,
             };
-            let label = |what: &str| passes::label(what, light, &lights);
-            list.push(volumes.count_pass(label("quads"), &silhouettes));
-            list.extend(volumes.wedge_passes(&label("wedges"), &silhouettes, &mut warnings));
-            list.extend(buffers.resolve_pass(label("resolve")));
-            let image = light_image(params);
-            let horizon = Horizon::wanted(self.name(), light, shape, image.is_some(), params)?;
-            list.extend(horizon.pass(label("horizon"), &draws, &targets, buffers.visibility()));
-            let test = LitTest::Visibility(buffers.visibility());
-            list.push(draws.lit_pass(&targets, light, &label("lit"), test));
-        }
-        let mut frame = targets.frame(recording, list, buffers.visibility().output())?;
-        frame.warnings = warnings;
-        Ok(frame)
+            let mut passes = vec![volumes.count_pass(turn.label("quads"), &silhouettes)];
+            let (label, warnings) = (turn.label("wedges"), &mut turn.notes.warnings);
+            passes.extend(volumes.wedge_passes(&label, &silhouettes, warnings));
+            let resolve = buffers.resolve_pass(turn.label("resolve"));
+            passes.extend(resolve.map(|pass| Pass::new(PassRole::Resolve, pass)));
+            Ok(passes)
+        })
+    }
+
+    fn wedges(
+        &self,
+        scene: &Scene,
+        params: &Params,
+    ) -> Result<Option<SceneWedges>, TechniqueError> {
+        let settings = SoftSettings::read(params)?;
+        settings.scene_wedges(self.name(), scene, 1).map(Some)
     }
 }

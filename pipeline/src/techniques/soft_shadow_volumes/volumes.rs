@@ -7,33 +7,32 @@ use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
 
 use super::buffers::Buffers;
 use crate::geometry::wedge::{Wedge, WedgeStatistics};
-use crate::parts::casters::SKIP;
 use crate::parts::passes::{Targets, View};
 use crate::parts::visibility::{Positions, attachment, binding};
-use crate::parts::wedges::COVERAGE_DRAW;
 use crate::parts::wedges::soft::count::Counting;
 use crate::parts::wedges::soft::covering::Covering;
 use crate::parts::wedges::soft::edges::Silhouettes;
 use crate::parts::wedges::soft::light::SoftLight;
+use crate::parts::wedges::soft::settings::SoftSettings;
 use crate::parts::wedges::soft::wedges::{
-    AreaStatistics, Note, WedgeArea, WedgePipeline, construction, warnings_of,
+    AreaStatistics, Note, WedgeArea, WedgePipeline, warnings_of,
 };
-use crate::technique::{Params, Warning};
+use crate::technique::{DrawRole, Pass, PassRole, Warning};
 
 /// Quads and wedges of one light.
-pub(super) struct Volumes<'a> {
+pub(super) struct LightVolumes<'a> {
     pub(super) view: &'a View,
     pub(super) targets: &'a Targets,
     pub(super) positions: Positions,
     pub(super) buffers: &'a Buffers,
     pub(super) light: &'a SoftLight,
-    pub(super) params: &'a Params,
+    pub(super) settings: &'a SoftSettings,
     pub(super) covering: Covering,
 }
 
-impl Volumes<'_> {
+impl LightVolumes<'_> {
     /// Pass 1: the hard shadow count.
-    pub(super) fn count_pass(&self, label: String, silhouettes: &Silhouettes) -> RenderPass {
+    pub(super) fn count_pass(&self, label: String, silhouettes: &Silhouettes) -> Pass {
         let eight_bits = self.buffers.six_bits.is_some();
         let to = if eight_bits {
             CountTo::Alpha
@@ -48,14 +47,15 @@ impl Volumes<'_> {
             to,
         };
         let targets = self.buffers.targets().into_iter();
-        RenderPass {
+        let pass = RenderPass {
             label,
             color: targets
                 .map(|t| attachment(t, LoadOp::Clear(clear)))
                 .collect(),
             depth_stencil: None,
             draws: counting.draws(silhouettes),
-        }
+        };
+        Pass::new(PassRole::HardCount, pass)
     }
 
     /// Pass 2: one wedge after the other; copying back, two passes for each.
@@ -64,8 +64,8 @@ impl Volumes<'_> {
         label: &str,
         silhouettes: &Silhouettes,
         warnings: &mut Vec<Warning>,
-    ) -> Vec<RenderPass> {
-        let construction = construction(self.params);
+    ) -> Vec<Pass> {
+        let construction = self.settings.construction;
         let mut statistics = WedgeStatistics::default();
         let mut areas = AreaStatistics::default();
         let mut passes = Vec::new();
@@ -99,33 +99,35 @@ impl Volumes<'_> {
         label: &str,
         targets: Vec<TextureId>,
         load: LoadOp<[f32; 4]>,
-        draws: Vec<Draw>,
-    ) -> RenderPass {
-        RenderPass {
+        draws: Vec<(Draw, DrawRole)>,
+    ) -> Pass {
+        let pass = RenderPass {
             label: label.to_owned(),
             color: targets.into_iter().map(|t| attachment(t, load)).collect(),
             depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
-            draws,
-        }
+            draws: Vec::new(),
+        };
+        Pass::with_draws(PassRole::Wedges, pass, draws)
     }
 
-    fn skip(&self) -> bool {
-        self.params.get(SKIP.name) != "off"
-    }
-
-    fn blended(&self, area: &WedgeArea, shader: impl Fn(CoverTo) -> FragmentStage) -> Vec<Draw> {
+    fn blended(
+        &self,
+        area: &WedgeArea,
+        shader: impl Fn(CoverTo) -> FragmentStage,
+    ) -> Vec<(Draw, DrawRole)> {
         let to = if self.buffers.six_bits.is_some() {
             CoverTo::SixBits
         } else {
             CoverTo::Visibility
         };
         let pipeline = WedgePipeline {
-            label: COVERAGE_DRAW,
+            label: "penumbra",
             fragment: shader(to),
             targets: vec![ColorTargetState::ADDITIVE; self.buffers.targets().len()],
             textures: self.bindings(self.positions.texture),
-            skip: self.skip(),
+            skip: self.settings.skip,
             note: Note::TakeAndRemove,
+            role: DrawRole::Coverage,
         };
         area.draws(self.view, pipeline)
     }
@@ -137,23 +139,25 @@ impl Volumes<'_> {
         area: &WedgeArea,
         aside: TextureId,
         shader: impl Fn(CoverTo) -> FragmentStage,
-    ) -> [RenderPass; 2] {
+    ) -> [Pass; 2] {
         let visibility = self.buffers.visibility;
         let add = WedgePipeline {
             label: "penumbra aside",
             fragment: shader(CoverTo::Copied),
             targets: vec![ColorTargetState::OPAQUE],
             textures: self.bindings(visibility),
-            skip: self.skip(),
+            skip: self.settings.skip,
             note: Note::Take,
+            role: DrawRole::CoverageAside,
         };
         let copy = WedgePipeline {
             label: "copy back",
             fragment: Resolve::Copy.stage(),
             targets: vec![ColorTargetState::OPAQUE],
             textures: vec![binding(aside)],
-            skip: self.skip(),
+            skip: self.settings.skip,
             note: Note::Remove,
+            role: DrawRole::CopyBack,
         };
         let add = area.draws(self.view, add);
         let copy = area.draws(self.view, copy);

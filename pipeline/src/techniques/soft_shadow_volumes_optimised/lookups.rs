@@ -4,10 +4,9 @@ use gnomon_raster::{Recording, TextureId};
 use gnomon_shaders::coverage::Image;
 use gnomon_shaders::split_volumes::Tables;
 
-use super::{COVERAGE, SPLIT_BITS};
 use crate::parts::wedges::soft::light::SoftLight;
 use crate::parts::wedges::soft::split_tables;
-use crate::technique::{Params, TechniqueError};
+use crate::technique::TechniqueError;
 
 /// Look-up textures of the lights of a frame, one set for each shape.
 #[derive(Default)]
@@ -18,13 +17,9 @@ impl Lookups {
     pub(super) fn of(
         &mut self,
         light: &SoftLight,
-        params: &Params,
+        tables: Tables,
         recording: &mut Recording,
     ) -> Result<Option<(Tables, [TextureId; 3])>, TechniqueError> {
-        let tables = Tables {
-            coverage: params.get(COVERAGE.name) == "lut",
-            split: params.get(SPLIT_BITS.name) == "lut",
-        };
         let Some(side) = light.sides.first().filter(|_| tables != Tables::default()) else {
             return Ok(None);
         };

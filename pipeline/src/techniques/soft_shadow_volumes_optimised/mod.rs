@@ -11,7 +11,7 @@
 //!
 //! * Both 8-bit buffers are attached at once and the shader chooses by the side of
 //!   the hard quad, which the paper had to leave for want of precision: here count
-//!   and side are one expression on one position ([`super::soft_shadow_volumes`]),
+//!   and side are one expression on one position (as in `soft-shadow-volumes`),
 //!   and a wedge need not be drawn in halves. With `halves=on` it is: one buffer
 //!   after the other, for less colour traffic and more draws.
 //! * Carry bits hold [`gnomon_shaders::split_volumes::CAPACITY`] full contributions
@@ -21,72 +21,135 @@ mod buffers;
 mod lookups;
 mod volumes;
 
-use gnomon_raster::Recording;
-use gnomon_shaders::split_volumes::{AddVisibility, Combination};
+use gnomon_shaders::split_volumes::{AddVisibility, Combination, Tables};
 
-use super::soft_shadow_volumes::SPHERE;
-use crate::parts::casters::{OPEN_CASTERS, SKIP};
-use crate::parts::horizon::{HORIZON, Horizon};
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
+use crate::geometry::wedge::Construction;
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::LitTest;
+use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::Positions;
-use crate::parts::wedges::soft::edges::Casters;
+use crate::parts::wedges::soft::edges::{Silhouettes, SoftCasters};
 use crate::parts::wedges::soft::light::{SoftLight, split};
+use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings, WEDGE};
 use crate::parts::wedges::soft::wedges::warnings_of;
-use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError};
+use crate::technique::{
+    Capabilities, Choice, Condition, Frame, LightFact, Param, ParamInfo, Params, Pass, PassRole,
+    SceneWedges, ShadowKind, Technique, TechniqueError, Value, WedgeUse,
+};
+use crate::world::light::Light;
 use crate::world::scene::Scene;
+use crate::{choices, param_list};
 use buffers::Buffers;
 use lookups::Lookups;
-use volumes::{Met, Volumes};
+use volumes::{PartStatistics, PartVolumes};
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumesOptimised;
 
-const WEDGE: ParamInfo = ParamInfo {
-    default: "paper4",
-    ..super::soft_shadow_volumes::WEDGE
-};
+const WEDGE_TIGHT: Param<Construction> = WEDGE.with_default(Value::Word("paper4"));
 
-const COVERAGE: ParamInfo = ParamInfo {
-    name: "coverage",
-    default: "arithmetic",
-    valid: "arithmetic|lut",
-    summary: "coverage computed, or from the paper's angle cube and area map",
-};
+choices! {
+    /// Computed, or looked up in textures.
+    enum Computed {
+        /// By the shader.
+        Arithmetic = "arithmetic",
+        /// From a texture.
+        Lut = "lut",
+    }
+}
 
-const SPLIT_BITS: ParamInfo = ParamInfo {
-    name: "split-bits",
-    default: "arithmetic",
-    valid: "arithmetic|lut",
-    summary: "12 bits of coverage split by arithmetic, or by a 1024-entry map that leaves 10",
-};
+const EXTENDED: Condition = Condition::Lights(LightFact::Extended);
 
-const COMBINE: ParamInfo = ParamInfo {
-    name: "combine",
-    default: "sum",
-    valid: "sum|paper|bounded",
-    summary: "silhouettes: summed, max + min/2 one after the other, or half way from max to sum",
-};
+const COVERAGE: Param<Computed> = Param::choice(
+    "coverage",
+    Computed::Arithmetic.word(),
+    "coverage computed, or from the paper's angle cube and area map",
+)
+.when(EXTENDED);
 
-const COMBINE_OVER: ParamInfo = ParamInfo {
-    name: "combine-over",
-    default: "outline",
-    valid: "outline|caster",
-    summary: "what is combined unless summed: outlines with their holes, or all of a caster's",
-};
+const SPLIT_BITS: Param<Computed> = Param::choice(
+    "split-bits",
+    Computed::Arithmetic.word(),
+    "12 bits of coverage split by arithmetic, or by a 1024-entry map that leaves 10",
+)
+.when(EXTENDED);
 
-pub(super) const SPLIT: ParamInfo = ParamInfo {
-    name: "split",
-    default: "1",
-    valid: "1|2|3|4|5|6|7|8",
-    summary: "k: a rectangle as k x k lights, each with its own silhouettes and wedges",
-};
+impl Choice for Combination {
+    const NAMES: &'static [&'static str] = &["sum", "paper", "bounded"];
+    const ALL: &'static [Self] = &[Self::Sum, Self::Paper, Self::Bounded];
+}
 
-const HALVES: ParamInfo = ParamInfo {
-    name: "halves",
-    default: "off",
-    valid: "on|off",
-    summary: "inner and outer halves of wedges apart, each culled and to one buffer; same bits",
-};
+const COMBINE: Param<Combination> = Param::choice(
+    "combine",
+    "sum",
+    "silhouettes: summed, max + min/2 one after the other, or half way from max to sum",
+);
+
+choices! {
+    /// What is combined.
+    enum CombineOver {
+        /// Outlines with their holes.
+        Outline = "outline",
+        /// All of a caster's.
+        Caster = "caster",
+    }
+}
+
+const COMBINE_OVER: Param<CombineOver> = Param::choice(
+    "combine-over",
+    CombineOver::Outline.word(),
+    "what is combined unless summed: outlines with their holes, or all of a caster's",
+)
+.when(Condition::Not("combine", &["sum"]));
+
+const SPLIT: Param<u32> = Param::<u32>::whole(
+    "split",
+    1,
+    [1, 8],
+    "k: a rectangle as k x k lights, each with its own silhouettes and wedges",
+);
+
+const HALVES: Param<bool> = Param::switch(
+    "halves",
+    false,
+    "inner and outer halves of wedges apart, each culled and to one buffer; same bits",
+)
+.when(EXTENDED);
+
+/// What parameters decide.
+struct OptimisedSettings {
+    tables: Tables,
+    combine: Combination,
+    over: CombineOver,
+    split: u32,
+    halves: bool,
+    soft: SoftSettings,
+}
+
+impl OptimisedSettings {
+    fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            tables: Tables {
+                coverage: params.get(&COVERAGE)? == Computed::Lut,
+                split: params.get(&SPLIT_BITS)? == Computed::Lut,
+            },
+            combine: params.get(&COMBINE)?,
+            over: params.get(&COMBINE_OVER)?,
+            split: params.get(&SPLIT)?,
+            halves: params.get(&HALVES)?,
+            soft: SoftSettings::read(params)?,
+        })
+    }
+
+    /// The silhouettes that are combined, seen from the middle of a light.
+    fn groups(&self, casters: &SoftCasters<'_>, light: &SoftLight) -> Vec<Silhouettes> {
+        match (self.combine, self.over) {
+            (Combination::Sum, _) => vec![casters.silhouettes(light.centre)],
+            (_, CombineOver::Caster) => casters.each(light.centre),
+            (_, CombineOver::Outline) => casters.outlines(light.centre),
+        }
+    }
+}
 
 impl Technique for SoftShadowVolumesOptimised {
     fn name(&self) -> &'static str {
@@ -98,24 +161,27 @@ impl Technique for SoftShadowVolumesOptimised {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        const PARAMS: &[ParamInfo] = &[
-            WEDGE,
-            COVERAGE,
-            SPLIT_BITS,
-            COMBINE,
-            COMBINE_OVER,
-            SPLIT,
-            HALVES,
-            SPHERE,
-            HORIZON,
-            OPEN_CASTERS,
-            passes::LIGHT,
-            SKIP,
-            passes::SHADING,
-            passes::COLOR_FORMAT,
-            passes::DEPTH_FORMAT,
-        ];
-        PARAMS
+        param_list!(
+            &[
+                WEDGE_TIGHT.info,
+                COVERAGE.info,
+                SPLIT_BITS.info,
+                COMBINE.info,
+                COMBINE_OVER.info,
+                SPLIT.info,
+                HALVES.info,
+            ],
+            SoftSettings::PARAMS,
+            FrameSettings::PARAMS
+        )
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            wedges: WedgeUse::Single,
+            lights: SOFT_LIGHTS,
+            ..Capabilities::of_silhouettes(ShadowKind::Soft)
+        }
     }
 
     fn frame(
@@ -124,68 +190,98 @@ impl Technique for SoftShadowVolumesOptimised {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let mut recording = Recording::default();
-        let targets = Targets::create(size, params, &mut recording)?;
-        let positions = Positions::create(size, &mut recording)?;
-        let buffers = Buffers::create(size, &mut recording)?;
-        let draws = SceneDraws::new(scene, size, params);
-        let casters = Casters::new(self.name(), scene, params)?;
-        let lights = passes::lights(scene, params)?;
-        let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
-        let mut warnings = Vec::new();
+        let settings = OptimisedSettings::read(params)?;
+        let soft = settings.soft;
+        let casters = SoftCasters::new(scene, soft.open_casters)?;
+        let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
+        let frame = frame.with_horizon(self.name(), soft.horizon, false);
+        let (mut frame, positions) = frame.with_positions()?;
+        let buffers = Buffers::create(size, &mut frame.recording)?;
         let mut lookups = Lookups::default();
-        for &number in lights.iter().rev() {
-            let k = params.get(SPLIT.name).parse().unwrap_or(1);
-            let parts = split(self.name(), &scene.lights[number], number, k)?;
-            let weight = 1.0 / parts.len() as f32;
-            let mut met = Met::default();
-            for (turn, part) in parts.iter().enumerate() {
-                let seen = params.get(SPHERE.name) != "equator";
-                let light = SoftLight::new(self.name(), part, number, &draws.view, seen)?;
-                let groups = match combination(params) {
-                    Combination::Sum => vec![casters.silhouettes(light.centre)],
-                    _ if params.get(COMBINE_OVER.name) == "caster" => casters.each(light.centre),
-                    _ => casters.outlines(light.centre),
-                };
-                let volumes = Volumes {
-                    view: &draws.view,
-                    targets: &targets,
+        frame.lit(LitTest::Visibility(buffers.visibility()), |turn| {
+            let (light, number) = (turn.light(), turn.number);
+            let parts = split(self.name(), light, number, settings.split)?;
+            let mut passes = Vec::new();
+            let mut statistics = PartStatistics::default();
+            for part in 0..parts.len() {
+                let of = PartOfLight {
+                    technique: self.name(),
+                    settings: &settings,
+                    casters: &casters,
                     positions,
                     buffers: &buffers,
-                    tables: lookups.of(&light, params, &mut recording)?,
-                    light: &light,
-                    params,
+                    parts: &parts,
+                    part,
                 };
-                let label = |what: &str| passes::label(what, number, &lights);
-                for (turn, group) in groups.iter().enumerate() {
-                    list.push(volumes.count_pass(label("quads"), group));
-                    list.extend(volumes.wedge_passes(&label("wedges"), group, &mut met));
-                    list.push(buffers.combine_pass(label("combine"), turn));
-                }
-                let add = AddVisibility {
-                    rule: combination(params),
-                    weight,
-                };
-                list.push(buffers.add_pass(label("resolve"), groups.len(), add, turn));
+                passes.extend(of.passes(turn, &mut lookups, &mut statistics)?);
             }
-            let label = |what: &str| passes::label(what, number, &lights);
-            warnings.extend(warnings_of(&label("wedges"), &met.wedges, &met.areas));
-            let light = &scene.lights[number];
-            let horizon = Horizon::wanted(self.name(), number, light, false, params)?;
-            list.extend(horizon.pass(label("horizon"), &draws, &targets, buffers.visibility()));
-            let visibility = LitTest::Visibility(buffers.visibility());
-            list.push(draws.lit_pass(&targets, number, &label("lit"), visibility));
-        }
-        let mut frame = targets.frame(recording, list, buffers.visibility().output())?;
-        frame.warnings = warnings;
-        Ok(frame)
+            let label = turn.label("wedges");
+            let warnings = warnings_of(&label, &statistics.wedges, &statistics.areas);
+            turn.notes.warnings.extend(warnings);
+            Ok(passes)
+        })
+    }
+
+    fn wedges(
+        &self,
+        scene: &Scene,
+        params: &Params,
+    ) -> Result<Option<SceneWedges>, TechniqueError> {
+        let settings = OptimisedSettings::read(params)?;
+        let wedges = settings
+            .soft
+            .scene_wedges(self.name(), scene, settings.split)?;
+        Ok(Some(wedges))
     }
 }
 
-fn combination(params: &Params) -> Combination {
-    match params.get(COMBINE.name) {
-        "paper" => Combination::Paper,
-        "bounded" => Combination::Bounded,
-        _ => Combination::Sum,
+/// One of the lights that a light is split into.
+struct PartOfLight<'a> {
+    technique: &'static str,
+    settings: &'a OptimisedSettings,
+    casters: &'a SoftCasters<'a>,
+    positions: Positions,
+    buffers: &'a Buffers,
+    parts: &'a [Light],
+    part: usize,
+}
+
+impl PartOfLight<'_> {
+    fn passes(
+        &self,
+        turn: &mut LightTurn<'_, '_>,
+        lookups: &mut Lookups,
+        statistics: &mut PartStatistics,
+    ) -> Result<Vec<Pass>, TechniqueError> {
+        let (settings, view) = (self.settings, turn.view());
+        let source = &self.parts[self.part];
+        let seen = settings.soft.seen();
+        let light = SoftLight::new(self.technique, source, turn.number, view, seen)?;
+        let groups = settings.groups(self.casters, &light);
+        let volumes = PartVolumes {
+            view,
+            targets: turn.targets,
+            positions: self.positions,
+            buffers: self.buffers,
+            tables: lookups.of(&light, settings.tables, turn.recording)?,
+            light: &light,
+            settings: &settings.soft,
+            halves: settings.halves,
+        };
+        let mut passes = Vec::new();
+        for (number, group) in groups.iter().enumerate() {
+            passes.push(volumes.count_pass(turn.label("quads"), group));
+            passes.extend(volumes.wedge_passes(&turn.label("wedges"), group, statistics));
+            let combine = self.buffers.combine_pass(turn.label("combine"), number);
+            passes.push(Pass::new(PassRole::Combine, combine));
+        }
+        let add = AddVisibility {
+            rule: settings.combine,
+            weight: 1.0 / self.parts.len() as f32,
+        };
+        let label = turn.label("resolve");
+        let resolve = self.buffers.add_pass(label, groups.len(), add, self.part);
+        passes.push(Pass::new(PassRole::Resolve, resolve));
+        Ok(passes)
     }
 }

@@ -5,54 +5,53 @@ use gnomon_raster::{Draw, LoadOp, RenderPass, TextureId};
 use gnomon_shaders::soft_volumes::{CountTo, HardPlane};
 use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
 
-use super::HALVES;
 use super::buffers::Buffers;
 use crate::geometry::wedge::{Wedge, WedgeStatistics};
-use crate::parts::casters::SKIP;
 use crate::parts::passes::{Targets, View};
 use crate::parts::visibility::{Positions, attachment, binding};
-use crate::parts::wedges::COVERAGE_DRAW;
 use crate::parts::wedges::soft::count::Counting;
 use crate::parts::wedges::soft::edges::Silhouettes;
 use crate::parts::wedges::soft::halves::Half;
 use crate::parts::wedges::soft::light::{LightSide, SoftLight};
-use crate::parts::wedges::soft::wedges::{
-    AreaStatistics, Note, WedgeArea, WedgePipeline, construction,
-};
-use crate::technique::Params;
+use crate::parts::wedges::soft::settings::SoftSettings;
+use crate::parts::wedges::soft::wedges::{AreaStatistics, Note, WedgeArea, WedgePipeline};
+use crate::technique::{DrawRole, Pass, PassRole};
 
-/// What wedges of all parts of a light met.
+/// What became of the wedges of all parts of a light.
 #[derive(Default)]
-pub(super) struct Met {
+pub(super) struct PartStatistics {
     pub(super) wedges: WedgeStatistics,
     pub(super) areas: AreaStatistics,
 }
 
 /// Quads and wedges of one part of a light.
-pub(super) struct Volumes<'a> {
+pub(super) struct PartVolumes<'a> {
     pub(super) view: &'a View,
     pub(super) targets: &'a Targets,
     pub(super) positions: Positions,
     pub(super) buffers: &'a Buffers,
     pub(super) tables: Option<(Tables, [TextureId; 3])>,
     pub(super) light: &'a SoftLight,
-    pub(super) params: &'a Params,
+    pub(super) settings: &'a SoftSettings,
+    /// Draw halves of wedges apart.
+    pub(super) halves: bool,
 }
 
-impl Volumes<'_> {
-    pub(super) fn count_pass(&self, label: String, group: &Silhouettes) -> RenderPass {
+impl PartVolumes<'_> {
+    pub(super) fn count_pass(&self, label: String, group: &Silhouettes) -> Pass {
         let counting = Counting {
             view: self.view,
             positions: self.positions,
             centre: self.light.centre,
             to: CountTo::Visibility,
         };
-        RenderPass {
+        let pass = RenderPass {
             label,
             color: vec![attachment(self.buffers.hard, LoadOp::Clear([1.0; 4]))],
             depth_stencil: None,
             draws: counting.draws(group),
-        }
+        };
+        Pass::new(PassRole::HardCount, pass)
     }
 
     /// Both buffers at once, or one after the other with the half that it takes.
@@ -60,28 +59,28 @@ impl Volumes<'_> {
         &self,
         label: &str,
         group: &Silhouettes,
-        met: &mut Met,
-    ) -> Vec<RenderPass> {
+        statistics: &mut PartStatistics,
+    ) -> Vec<Pass> {
         let [added, taken] = self.buffers.split;
-        if self.params.get(HALVES.name) != "on" {
+        if !self.halves {
             let to = WedgeTarget {
                 buffers: vec![added, taken],
                 half: None,
             };
-            return vec![self.wedge_pass(label, group, &to, met)];
+            return vec![self.wedge_pass(label, group, &to, statistics)];
         }
         let of = |half, buffer| WedgeTarget {
             buffers: vec![buffer],
             half: Some(half),
         };
-        let inner = self.wedge_pass(label, group, &of(Half::Inner, added), met);
+        let inner = self.wedge_pass(label, group, &of(Half::Inner, added), statistics);
         // The edges are the same; they are counted once.
-        let mut outer_met = Met {
-            areas: met.areas,
-            ..Met::default()
+        let mut of_outer = PartStatistics {
+            areas: statistics.areas,
+            ..PartStatistics::default()
         };
-        let outer = self.wedge_pass(label, group, &of(Half::Outer, taken), &mut outer_met);
-        met.areas = outer_met.areas;
+        let outer = self.wedge_pass(label, group, &of(Half::Outer, taken), &mut of_outer);
+        statistics.areas = of_outer.areas;
         vec![inner, outer]
     }
 
@@ -90,15 +89,16 @@ impl Volumes<'_> {
         label: &str,
         group: &Silhouettes,
         to: &WedgeTarget,
-        met: &mut Met,
-    ) -> RenderPass {
-        let construction = construction(self.params);
+        statistics: &mut PartStatistics,
+    ) -> Pass {
+        let construction = self.settings.construction;
         let mut draws = Vec::new();
         for side in &self.light.sides {
             for edge in group.edges.iter().filter(|e| e.has_plane()) {
-                let parts = Wedge::of_edge(construction, &side.area, edge.ends, &mut met.wedges);
+                let wedges = &mut statistics.wedges;
+                let parts = Wedge::of_edge(construction, &side.area, edge.ends, wedges);
                 for part in parts {
-                    let (view, light, areas) = (self.view, &side.area, &mut met.areas);
+                    let (view, light, areas) = (self.view, &side.area, &mut statistics.areas);
                     let area = match to.half {
                         None => WedgeArea::new(view, construction, light, part.edge, areas),
                         Some(h) => WedgeArea::half(view, construction, light, part.edge, h, areas),
@@ -109,12 +109,13 @@ impl Volumes<'_> {
         }
         let clear = LoadOp::Clear([0.0; 4]);
         let buffers = to.buffers.iter();
-        RenderPass {
+        let pass = RenderPass {
             label: label.to_owned(),
             color: buffers.map(|t| attachment(*t, clear)).collect(),
             depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
-            draws,
-        }
+            draws: Vec::new(),
+        };
+        Pass::with_draws(PassRole::Wedges, pass, draws)
     }
 
     fn wedge(
@@ -124,7 +125,7 @@ impl Volumes<'_> {
         plane: HardPlane,
         area: &WedgeArea,
         to: &WedgeTarget,
-    ) -> Vec<Draw> {
+    ) -> Vec<(Draw, DrawRole)> {
         let shader = SplitPenumbra {
             light: side.projector,
             edge: side.edge(part.edge),
@@ -139,12 +140,13 @@ impl Volumes<'_> {
         let lookups = self.tables.iter().flat_map(|(_, textures)| textures);
         let textures = [self.positions.texture].into_iter().chain(lookups.copied());
         let pipeline = WedgePipeline {
-            label: COVERAGE_DRAW,
+            label: "penumbra",
             fragment: shader.stage(),
             targets: vec![ColorTargetState::ADDITIVE; to.buffers.len()],
             textures: textures.map(binding).collect(),
-            skip: self.params.get(SKIP.name) != "off",
+            skip: self.settings.skip,
             note: Note::TakeAndRemove,
+            role: DrawRole::Coverage,
         };
         area.draws(self.view, pipeline)
     }

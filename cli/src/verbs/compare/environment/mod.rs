@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use gnomon_pipeline::measure::comparison::{Directions, EnvironmentReference, RadianceScore};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::environment::PlacedEnvironment;
 use gnomon_pipeline::world::environment::cube::luminance;
 use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
@@ -50,8 +51,8 @@ struct Measured<'a> {
 }
 
 /// Renders, measures, draws and prints.
-pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
-    let job = Job::new(args)?;
+pub(super) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliError> {
+    let job = Job::new(args, registry)?;
     let runs = job.scenes.len() * job.entries.len();
     let progress = Progress::new(u64::from(job.settings.size[1]) + runs as u64 + 1);
     progress.doing("tracing the reference");
@@ -83,8 +84,8 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
 }
 
 impl Job {
-    fn new(args: &CompareArgs) -> Result<Self, CliError> {
-        let entries = job::entries(args, None)?;
+    fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
+        let entries = job::entries(args, registry, None)?;
         let lights = if args.lights.is_empty() {
             &LIGHTS[..]
         } else {
@@ -186,7 +187,7 @@ impl References {
 }
 
 fn highlights(entry: &Entry) -> bool {
-    entry.params.get("shading") != "lambert"
+    entry.params.text("shading") != Some("lambert")
 }
 
 /// Share of the map's energy that is ambient light.

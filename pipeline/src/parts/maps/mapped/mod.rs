@@ -5,27 +5,25 @@
 //! serving all views in turn; then the lit pass.
 
 mod notes;
-mod params;
+mod settings;
 
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor};
+use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};
 use gnomon_shaders::light_view::LightMapping;
 use gnomon_shaders::shadow_maps::{Shadow, ShadowTo};
 use gnomon_shaders::transform::FullScreen;
 
-pub(crate) use notes::{Notes, Said};
-pub(crate) use params::MapParams;
-pub(crate) use params::{
-    BIAS, FIT, MAP_SIZE, Margin, NEAR, SKIP, SLOPE_BIAS, VIEW, pattern, square_side,
-};
+pub(crate) use notes::{MapNotes, ViewsOfLight};
+pub(crate) use settings::{MapSettings, Margin, ViewSettings};
 
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
 use super::lit_tiles::{FurtherLights, LitTiles};
-use crate::parts::horizon::Horizon;
-use crate::parts::passes::{self, LitTest, SceneDraws, Targets, View};
+use crate::parts::frame_settings::FrameSettings;
+use crate::parts::passes::{LitTest, View};
+use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
-use crate::technique::{Frame, Params, TechniqueError};
+use crate::technique::{Frame, Pass, PassRole, TechniqueError};
 use crate::world::scene::Scene;
 
 /// A view in which shadows are looked up.
@@ -91,7 +89,10 @@ pub(crate) struct Mapped<'a> {
     pub(crate) name: &'static str,
     pub(crate) scene: &'a Scene,
     pub(crate) size: [u32; 2],
-    pub(crate) params: &'a Params,
+    pub(crate) frame: FrameSettings,
+    pub(crate) maps: MapSettings,
+    /// Limit what facets see to what is before them.
+    pub(crate) horizon: bool,
     pub(crate) margin: Margin,
 }
 
@@ -103,64 +104,47 @@ impl Mapped<'_> {
         sources: impl Fn(usize) -> Result<Sources, TechniqueError>,
         shader: impl Fn(&LookUp<'_>) -> FragmentStage,
     ) -> Result<Frame, TechniqueError> {
-        let maps = MapParams::new(self.name, self.params)?;
-        let lights = passes::lights(self.scene, self.params)?;
-        let mut recording = Recording::default();
-        let targets = Targets::create(self.size, self.params, &mut recording)?;
-        let positions = Positions::create(self.size, &mut recording)?;
+        let frame = ShadowedFrame::new(self.scene, self.size, &self.frame)?;
+        let frame = frame.with_horizon(self.name, self.horizon, false);
+        let (mut frame, positions) = frame.with_positions()?;
         let [width, height] = self.size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
-        let visibility = VisibilityTexture::red(recording.create(&desc)?);
-        let mut map = LightMap::create(maps.fitting.size, &mut recording)?;
-        map.slope = maps.slope_bias.unwrap_or(self.margin.slope);
-        let draws = SceneDraws::new(self.scene, self.size, self.params);
+        let visibility = VisibilityTexture::red(frame.recording.create(&desc)?);
+        let mut map = LightMap::create(self.maps.view.fitting.size, &mut frame.recording)?;
+        map.slope = self.maps.slope_bias.unwrap_or(self.margin.slope);
         let around = Surroundings::new(self.scene, self.size);
-        let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
-        let mut notes = Notes::default();
-        let further = FurtherLights::new(self.scene, &around, &draws.view, &lights, maps.skip);
-        for &light in lights.iter().rev() {
-            let sources = sources(light)?;
-            let tiles = further.tiles(light);
+        let lights = frame.lights.clone();
+        let view = View::new(&self.scene.camera, self.size);
+        let further = FurtherLights::new(self.scene, &around, &view, &lights, self.maps.skip);
+        frame.lit(LitTest::Visibility(visibility), |light| {
+            let sources = sources(light.number)?;
+            let tiles = further.tiles(light.number);
             let one = OneLight {
-                scene: self.scene,
-                view: &draws.view,
+                view: &view,
                 around: &around,
-                maps: &maps,
+                maps: &self.maps,
                 map,
                 positions,
                 visibility,
                 margin: self.margin,
                 tiles: tiles.as_ref(),
-                label: &|what| passes::label(what, light, &lights),
             };
-            list.extend(one.passes(&sources, &shader, &mut notes));
-            let label = |what: &str| passes::label(what, light, &lights);
-            let shone = &self.scene.lights[light];
-            let horizon = Horizon::wanted(self.name, light, shone, false, self.params)?;
-            list.extend(horizon.pass(label("horizon"), &draws, &targets, visibility));
-            let test = LitTest::Visibility(visibility);
-            list.push(draws.lit_pass(&targets, light, &label("lit"), test));
-        }
-        let mut frame = targets.frame(recording, list, visibility.output())?;
-        frame.warnings = notes.warnings;
-        frame.figures = notes.figures;
-        Ok(frame)
+            Ok(one.passes(&sources, &shader, light))
+        })
     }
 }
 
 /// Views and look-ups of one light.
 struct OneLight<'a> {
-    scene: &'a Scene,
     view: &'a View,
     around: &'a Surroundings<'a>,
-    maps: &'a MapParams,
+    maps: &'a MapSettings,
     map: LightMap,
     positions: Positions,
     visibility: VisibilityTexture,
     margin: Margin,
     /// Where shadows matter; `None`: everywhere.
     tiles: Option<&'a LitTiles>,
-    label: &'a dyn Fn(&str) -> String,
 }
 
 impl OneLight<'_> {
@@ -168,52 +152,64 @@ impl OneLight<'_> {
         &self,
         sources: &Sources,
         shader: &impl Fn(&LookUp<'_>) -> FragmentStage,
-        notes: &mut Notes,
-    ) -> Vec<RenderPass> {
+        turn: &mut LightTurn<'_, '_>,
+    ) -> Vec<Pass> {
+        let labels = turn.labels();
+        let mut notes = MapNotes::new(turn.notes, &labels);
         if let Some(tiles) = self.tiles {
-            notes.skipped(tiles, self.label);
+            notes.skipped(tiles);
         }
+        let look_up = |load, shader| self.look_up(labels("look-up"), load, shader);
         let nowhere = self.tiles.is_some_and(LitTiles::is_empty);
         let Some(first) = sources.lights.first().filter(|_| !nowhere) else {
-            return vec![self.look_up(LoadOp::Clear([1.0; 4]), None)];
+            return vec![look_up(LoadOp::Clear([1.0; 4]), None)];
         };
         let reference = first.reference(self.around);
-        let geometry = CasterGeometry::new(self.scene, self.around, self.view, reference);
+        let geometry = CasterGeometry::new(turn.scene, self.around, self.view, reference);
         let mut passes = Vec::new();
         let mut load = LoadOp::Clear([1.0; 4]);
-        let mut said = Said::default();
+        let mut views = ViewsOfLight::default();
+        let ViewSettings {
+            views: kind,
+            fitting,
+        } = self.maps.view;
         for light in &sources.lights {
-            let maps = self.maps;
-            for fitted in views_of(light, self.around, maps.views, &maps.fitting) {
-                let bias = maps.bias(&fitted, self.margin);
-                said.add(&fitted, bias, maps.fitting.size);
-                let label = (self.label)("light view");
-                passes.push(fitted.pass(label, &geometry, self.view, &self.map, maps.skip));
-                let look_up = LookUp {
+            for fitted in views_of(light, self.around, kind, &fitting) {
+                let bias = self.maps.bias(&fitted, self.margin);
+                views.add(&fitted, bias, fitting.size);
+                let picture = fitted.pass(
+                    labels("light view"),
+                    &geometry,
+                    self.view,
+                    &self.map,
+                    self.maps.skip,
+                );
+                passes.push(Pass::new(PassRole::LightView, picture));
+                let stage = shader(&LookUp {
                     fitted: &fitted,
                     light,
-                    mapping: fitted.mapping(self.view, maps.fitting.size),
+                    mapping: fitted.mapping(self.view, fitting.size),
                     bias,
                     share: 1.0 / sources.lights.len() as f32,
-                };
-                let stage = shader(&look_up);
-                passes.push(self.look_up(load, Some((stage, sources.blend))));
+                });
+                passes.push(look_up(load, Some((stage, sources.blend))));
                 load = LoadOp::Load;
             }
         }
         if passes.is_empty() {
-            passes.push(self.look_up(load, None));
+            passes.push(look_up(load, None));
         }
-        said.into_notes(self.map.slope, self.label, notes);
+        notes.add(views, self.map.slope);
         passes
     }
 
     /// Looks shadows up in the picture; without a shader all is lit.
     fn look_up(
         &self,
+        label: String,
         load: LoadOp<[f32; 4]>,
         shader: Option<(FragmentStage, ColorTargetState)>,
-    ) -> RenderPass {
+    ) -> Pass {
         let draw = |(stage, blend)| {
             let pipeline = RenderPipeline {
                 label: "look-up".into(),
@@ -229,11 +225,12 @@ impl OneLight<'_> {
                 None => full_screen(pipeline, bindings.to_vec()),
             }
         };
-        RenderPass {
-            label: (self.label)("look-up"),
+        let pass = RenderPass {
+            label,
             color: vec![attachment(self.visibility.texture, load)],
             depth_stencil: None,
             draws: shader.into_iter().map(draw).collect(),
-        }
+        };
+        Pass::new(PassRole::LookUp, pass)
     }
 }

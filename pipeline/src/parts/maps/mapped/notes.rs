@@ -2,28 +2,19 @@
 
 use super::super::light_view::Fitted;
 use super::super::lit_tiles::LitTiles;
+use crate::parts::shadowed_frame::Notes;
 use crate::technique::{Figure, Warning};
 
-/// What is said of the views of a frame.
-#[derive(Default)]
-pub(crate) struct Notes {
-    pub(crate) warnings: Vec<Warning>,
-    pub(crate) figures: Vec<Figure>,
+/// What is said of one light's views. `label` adds the light's number where there
+/// are several.
+pub(crate) struct MapNotes<'a> {
+    notes: &'a mut Notes,
+    label: &'a dyn Fn(&str) -> String,
 }
 
-impl Notes {
-    /// Tiles in which a light's look-ups are left out.
-    pub(crate) fn skipped(&mut self, tiles: &LitTiles, label: &dyn Fn(&str) -> String) {
-        self.figures.push(Figure {
-            name: label("skipped-tiles"),
-            value: tiles.skipped() as f64,
-        });
-    }
-}
-
-/// What is to be said of a light's views, together.
+/// A light's views, counted together.
 #[derive(Default)]
-pub(crate) struct Said {
+pub(crate) struct ViewsOfLight {
     views: usize,
     cut: usize,
     limited: usize,
@@ -33,7 +24,7 @@ pub(crate) struct Said {
     range: Option<[f64; 2]>,
 }
 
-impl Said {
+impl ViewsOfLight {
     pub(crate) fn add(&mut self, fitted: &Fitted, bias: f64, size: u32) {
         self.views += 1;
         self.cut += fitted.cut;
@@ -44,42 +35,55 @@ impl Said {
         let [nearest, farthest] = self.range.unwrap_or([near, far]);
         self.range = Some([nearest.min(near), farthest.max(far)]);
     }
+}
 
-    /// `label` adds the light's number where there are several.
-    pub(crate) fn into_notes(self, slope: f64, label: &dyn Fn(&str) -> String, notes: &mut Notes) {
-        let mut figure = |name: &str, value: f64| {
-            let name = label(name);
-            notes.figures.push(Figure { name, value });
-        };
-        figure("views", self.views as f64);
-        if let Some([near, far]) = self.range {
-            figure("bias", self.bias);
-            figure("slope-bias", slope);
-            figure("texel", self.texel);
-            figure("near", near);
-            figure("far", far);
+impl<'a> MapNotes<'a> {
+    pub(crate) fn new(notes: &'a mut Notes, label: &'a dyn Fn(&str) -> String) -> Self {
+        Self { notes, label }
+    }
+
+    /// Tiles in which the light's look-ups are left out.
+    pub(crate) fn skipped(&mut self, tiles: &LitTiles) {
+        self.figure("skipped-tiles", tiles.skipped() as f64);
+    }
+
+    /// Figures and warnings of `views`, drawn with `slope`.
+    pub(crate) fn add(&mut self, views: ViewsOfLight, slope: f64) {
+        self.figure("views", views.views as f64);
+        if let Some([near, far]) = views.range {
+            self.figure("bias", views.bias);
+            self.figure("slope-bias", slope);
+            self.figure("texel", views.texel);
+            self.figure("near", near);
+            self.figure("far", far);
         }
-        let mut warn = |code, count: usize, what: &str| {
-            if count > 0 {
-                let message = format!("{}: {count} {what}", label("light view"));
-                notes.warnings.push(Warning {
-                    code,
-                    count,
-                    message,
-                });
-            }
-        };
-        warn(
+        self.warn(
             "casters-at-near-distance",
-            self.cut,
+            views.cut,
             "triangles of casters reach nearer to the light than is looked at and are cut there; \
              set near to less",
         );
-        warn(
+        self.warn(
             "view-limited",
-            self.limited,
+            views.limited,
             "views do not hold all casters that matter, for those are too near to the light or \
              beside it; try view=cube or a larger near",
         );
+    }
+
+    fn figure(&mut self, name: &str, value: f64) {
+        let name = (self.label)(name);
+        self.notes.figures.push(Figure { name, value });
+    }
+
+    fn warn(&mut self, code: &'static str, count: usize, what: &str) {
+        if count > 0 {
+            let message = format!("{}: {count} {what}", (self.label)("light view"));
+            self.notes.warnings.push(Warning {
+                code,
+                count,
+                message,
+            });
+        }
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::light::LightSphere;
-use super::report::Met;
+use super::report::LinkedReport;
 use super::volume::SoftVolume;
 use crate::geometry::silhouette_loops::SilhouetteLoops;
 use crate::geometry::wedge::paper1::LinkedSettings;
@@ -18,7 +18,7 @@ impl Examined<'_> {
         &self,
         sphere: &LightSphere,
         settings: &LinkedSettings,
-        met: &mut Met,
+        met: &mut LinkedReport,
     ) -> SoftVolume {
         let mesh = &self.object.mesh;
         let light = HardLight::Point(sphere.centre);
@@ -28,7 +28,7 @@ impl Examined<'_> {
     }
 
     /// Points along each silhouette loop.
-    fn loops(&self, mesh: &Mesh, light: HardLight, met: &mut Met) -> Vec<Vec<DVec3>> {
+    fn loops(&self, mesh: &Mesh, light: HardLight, met: &mut LinkedReport) -> Vec<Vec<DVec3>> {
         let silhouette = self.silhouette(light);
         // Silhouettes of orientations always balance; none is drawn if not.
         let Ok(loops) = SilhouetteLoops::new(&silhouette) else {

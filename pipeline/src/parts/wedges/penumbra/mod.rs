@@ -13,29 +13,89 @@ use gnomon_raster::{Format, LoadOp, Recording, RenderPass, TextureDescriptor, Te
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 
+use crate::geometry::caster::CasterPolicy;
+use crate::geometry::wedge::WedgeMesh;
+use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge};
+use crate::parts::casters::{OPEN_CASTERS, examine};
+use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::{SceneDraws, Targets};
 use crate::parts::visibility::{VisibilityTexture, attachment};
-use crate::technique::{ParamInfo, Params, TechniqueError};
-
-pub(crate) const INTERPOLATION: ParamInfo = ParamInfo {
-    name: "interpolation",
-    default: "linear",
-    valid: "linear|smoothstep",
-    summary: "between full light and full shadow: linear, or 3s^2 - 2s^3, nearer to a sphere",
+use crate::technique::{
+    Choice, Condition, LightFact, Param, ParamInfo, Params, Pass, PassRole, SceneWedges,
+    TechniqueError, WedgeKind,
 };
+use crate::world::scene::Scene;
+use light::LightSphere;
+use report::LinkedReport;
 
-pub(crate) const EXTRA_WEDGES: ParamInfo = ParamInfo {
-    name: "extra-wedges",
-    default: "on",
-    valid: "on|off",
-    summary: "up to six more wedges round acute vertices",
-};
+impl Choice for Interpolation {
+    const NAMES: &'static [&'static str] = &["linear", "smoothstep"];
+    const ALL: &'static [Self] = &[Self::Linear, Self::Smoothstep];
+}
 
-pub(crate) fn interpolation(params: &Params) -> Interpolation {
-    match params.get(INTERPOLATION.name) {
-        "linear" => Interpolation::Linear,
-        _ => Interpolation::Smoothstep,
+pub(crate) const INTERPOLATION: Param<Interpolation> = Param::choice(
+    "interpolation",
+    "linear",
+    "between full light and full shadow: linear, or 3s^2 - 2s^3, nearer to a sphere",
+)
+.when(Condition::Lights(LightFact::Extended));
+
+pub(crate) const EXTRA_WEDGES: Param<bool> = Param::switch(
+    "extra-wedges",
+    true,
+    "up to six more wedges round acute vertices",
+)
+.when(Condition::Lights(LightFact::Extended));
+
+/// Settings of both techniques on linked wedges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PenumbraSettings {
+    pub(crate) interpolation: Interpolation,
+    pub(crate) extra_wedges: bool,
+    pub(crate) open_casters: CasterPolicy,
+    pub(crate) frame: FrameSettings,
+}
+
+impl PenumbraSettings {
+    pub(crate) const PARAMS: &'static [ParamInfo] =
+        &[INTERPOLATION.info, EXTRA_WEDGES.info, OPEN_CASTERS.info];
+
+    pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
+        Ok(Self {
+            interpolation: params.get(&INTERPOLATION)?,
+            extra_wedges: params.get(&EXTRA_WEDGES)?,
+            open_casters: params.get(&OPEN_CASTERS)?,
+            frame: FrameSettings::read(params)?,
+        })
     }
+
+    pub(crate) fn linked(&self) -> LinkedSettings {
+        LinkedSettings {
+            extra_wedges: self.extra_wedges,
+            ..LinkedSettings::default()
+        }
+    }
+}
+
+/// The linked wedges of a scene, to be looked at.
+pub(crate) fn scene_wedges(scene: &Scene, params: &Params) -> Result<SceneWedges, TechniqueError> {
+    let settings = PenumbraSettings::read(params)?;
+    let casters = examine(scene, settings.open_casters)?;
+    let mut meshes: Vec<WedgeMesh> = Vec::new();
+    for light in settings.frame.lights(scene)? {
+        let Some(sphere) = LightSphere::of(&scene.lights[light]) else {
+            continue;
+        };
+        for caster in &casters {
+            let report = &mut LinkedReport::default();
+            let volume = caster.soft_volume(&sphere, &settings.linked(), report);
+            meshes.extend(volume.wedges.iter().map(LinkedWedge::mesh));
+        }
+    }
+    Ok(SceneWedges {
+        kind: WedgeKind::Linked,
+        meshes,
+    })
 }
 
 /// The light-intensity buffer, which all lights use in turn: signed 16 bits, 255
@@ -76,13 +136,14 @@ pub(crate) fn not_receiving_pass(
     buffer: TextureId,
     targets: &Targets,
     draws: &SceneDraws<'_>,
-) -> Option<RenderPass> {
+) -> Option<Pass> {
     let list = draws.not_receiving(&label, [FULL, 0.0, 0.0, 0.0]);
-    (!list.is_empty()).then(|| RenderPass {
+    let pass = (!list.is_empty()).then(|| RenderPass {
         depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
         draws: list,
         ..intensity_pass(label, buffer, LoadOp::Load)
-    })
+    });
+    pass.map(|pass| Pass::new(PassRole::NotReceiving, pass))
 }
 
 /// Every pixel at `intensity`.

@@ -1,11 +1,11 @@
-//! What was met while wedges were made, as warnings.
+//! What was found while wedges were made, as warnings.
 
 use crate::geometry::wedge::paper1::LinkedStatistics;
 use crate::technique::Warning;
 
 /// Counts over the casters of one light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Met {
+pub(crate) struct LinkedReport {
     /// Of the wedges.
     pub(crate) linked: LinkedStatistics,
     /// Silhouette loops.
@@ -19,7 +19,7 @@ pub(crate) struct Met {
 /// Loops from which an 8-bit count of nested umbrae could pass 127.
 pub(crate) const STENCIL_LOOPS: u64 = 128;
 
-impl Met {
+impl LinkedReport {
     /// A warning for each count that is not 0; `light` is the light's number.
     pub(crate) fn warnings(&self, light: usize) -> Vec<Warning> {
         let l = &self.linked;

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, DVec4};
 use gnomon_raster::{Gpu, GpuConfig, Subresource};
 
 use super::light::LightSphere;
-use super::report::Met;
+use super::report::LinkedReport;
 use super::volume::SoftVolume;
 use crate::geometry::wedge::paper1::{LinkedSettings, smoothed};
 use crate::parts::casters::{self, Examined};
@@ -50,7 +50,7 @@ impl<'a> Reference<'a> {
         let technique = techniques::find("penumbra-wedges").unwrap();
         let params = Params::defaults(technique);
         let casters = casters::examine(technique.name(), scene, &params).unwrap();
-        let mut met = Met::default();
+        let mut met = LinkedReport::default();
         let settings = LinkedSettings::default();
         let volumes = casters
             .into_iter()

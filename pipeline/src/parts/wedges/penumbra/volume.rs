@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use glam::{DVec3, DVec4};
 
 use super::light::LightSphere;
-use super::report::Met;
+use super::report::LinkedReport;
 use crate::geometry::wedge::Plane;
 use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge, link};
 use crate::geometry::winding;
@@ -55,7 +55,7 @@ impl SoftVolume {
         cap: Vec<[u32; 3]>,
         sphere: &LightSphere,
         settings: &LinkedSettings,
-        met: &mut Met,
+        met: &mut LinkedReport,
     ) -> Self {
         let mut volume = Self {
             wedges: Vec::new(),
@@ -75,7 +75,7 @@ impl SoftVolume {
         points: &[DVec3],
         sphere: &LightSphere,
         settings: &LinkedSettings,
-        met: &mut Met,
+        met: &mut LinkedReport,
     ) {
         let wedges = link(
             points,

@@ -10,49 +10,164 @@ use gnomon_shaders::soft_volumes::{CoverTo, ExactCoverage, HardPlane, Penumbra};
 use super::light::{LightSide, SoftLight};
 use super::light_image::LightImage;
 use super::table::{self, Contents};
-use crate::technique::{ParamInfo, Params, TechniqueError};
+use crate::choices;
+use crate::technique::{Condition, LightFact, Param, ParamInfo, Params, TechniqueError};
 
-pub(crate) const BACKEND: ParamInfo = ParamInfo {
-    name: "backend",
-    default: "exact",
-    valid: "exact|texture4d",
-    summary: "coverage of an edge in closed form, or from paper III's 4D texture",
-};
+choices! {
+    /// How the coverage of an edge is found.
+    pub(crate) enum Backend {
+        /// In closed form.
+        Exact = "exact",
+        /// From paper III's texture.
+        Texture4d = "texture4d",
+    }
+}
 
-pub(crate) const TEXTURE_SIZE: ParamInfo = ParamInfo {
-    name: "texture-size",
-    default: "32",
-    valid: "N",
-    summary: "entries in each dimension of the 4D texture, 2 to 90",
-};
+choices! {
+    /// How the texture is read.
+    enum TextureFilter {
+        /// The nearest entry.
+        Nearest = "nearest",
+        /// Sixteen entries.
+        Quadlinear = "quadlinear",
+    }
+}
 
-pub(crate) const TEXTURE_FILTER: ParamInfo = ParamInfo {
-    name: "texture-filter",
-    default: "nearest",
-    valid: "nearest|quadlinear",
-    summary: "how the 4D texture is read",
-};
+choices! {
+    /// Where entries of the texture are.
+    enum TextureCentred {
+        /// At cells' centres.
+        Cell = "cell",
+        /// Up to the border.
+        Vertex = "vertex",
+    }
+}
 
-pub(crate) const TEXTURE_CENTRED: ParamInfo = ParamInfo {
-    name: "texture-centred",
-    default: "cell",
-    valid: "cell|vertex",
-    summary: "entries of the 4D texture at cells' centres, as the paper's, or up to the border",
-};
+choices! {
+    /// Colours on a rectangle.
+    enum ImageName {
+        /// One.
+        White = "white",
+        /// Two.
+        Halves = "halves",
+        /// Sixteen lights.
+        Windows = "windows",
+        /// A fire.
+        Fire = "fire",
+    }
+}
 
-pub(crate) const LIGHT_IMAGE: ParamInfo = ParamInfo {
-    name: "light-image",
-    default: "white",
-    valid: "white|halves|windows|fire",
-    summary: "colours on a rectangle, by a coloured 4D texture: two, sixteen lights, a fire",
-};
+const BACKEND: Param<Backend> = Param::choice(
+    "backend",
+    Backend::Exact.word(),
+    "coverage of an edge in closed form, or from paper III's 4D texture; images need the texture",
+)
+.when(EXTENDED);
 
-pub(crate) const LIGHT_FRAME: ParamInfo = ParamInfo {
-    name: "light-frame",
-    default: "0",
-    valid: "N",
-    summary: "number of the fire's frame; each has a 4D texture of its own",
-};
+const EXTENDED: Condition = Condition::Lights(LightFact::Extended);
+
+/// Where the 4D texture is used.
+const WITH_TEXTURE: Condition = Condition::All(&[
+    EXTENDED,
+    Condition::Any(&[
+        Condition::Is("backend", &["texture4d"]),
+        Condition::Not("light-image", &["white"]),
+    ]),
+]);
+
+const TEXTURE_SIZE: Param<u32> = Param::<u32>::whole(
+    "texture-size",
+    32,
+    [2, 90],
+    "entries in each dimension of the 4D texture",
+)
+.unit("entries")
+.when(WITH_TEXTURE);
+
+const TEXTURE_FILTER: Param<TextureFilter> = Param::choice(
+    "texture-filter",
+    TextureFilter::Nearest.word(),
+    "how the 4D texture is read",
+)
+.when(WITH_TEXTURE);
+
+const TEXTURE_CENTRED: Param<TextureCentred> = Param::choice(
+    "texture-centred",
+    TextureCentred::Cell.word(),
+    "entries of the 4D texture at cells' centres, as the paper's, or up to the border",
+)
+.when(WITH_TEXTURE);
+
+const LIGHT_IMAGE: Param<ImageName> = Param::choice(
+    "light-image",
+    ImageName::White.word(),
+    "colours on a rectangle, by a coloured 4D texture: two, sixteen lights, a fire",
+)
+.when(EXTENDED);
+
+const LIGHT_FRAME: Param<u32> = Param::<u32>::whole(
+    "light-frame",
+    0,
+    [0, u32::MAX as u64],
+    "number of the fire's frame; each has a 4D texture of its own",
+)
+.when(Condition::All(&[
+    EXTENDED,
+    Condition::Is("light-image", &["fire"]),
+]));
+
+/// How the coverage of edges is found.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct CoveringSettings {
+    backend: Backend,
+    table: CoverageTable,
+    /// The colours on the light, where they are not one.
+    pub(crate) image: Option<LightImage>,
+}
+
+impl CoveringSettings {
+    pub(crate) const PARAMS: &'static [ParamInfo] = &[
+        BACKEND.info,
+        TEXTURE_SIZE.info,
+        TEXTURE_FILTER.info,
+        TEXTURE_CENTRED.info,
+        LIGHT_IMAGE.info,
+        LIGHT_FRAME.info,
+    ];
+
+    /// # Errors
+    /// `backend=exact` is asked for together with an image.
+    pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
+        let (backend, name) = (params.get(&BACKEND)?, params.get(&LIGHT_IMAGE)?);
+        let frame = params.get(&LIGHT_FRAME)?;
+        let image = match name {
+            ImageName::White => None,
+            ImageName::Halves => Some(LightImage::halves()),
+            ImageName::Windows => Some(LightImage::windows()),
+            ImageName::Fire => Some(LightImage::fire(frame)),
+        };
+        let asked = params.is_given(BACKEND.info.name) && backend == Backend::Exact;
+        if asked && image.is_some() {
+            return Err(TechniqueError::Contradiction {
+                technique: params.technique(),
+                settings: [
+                    (BACKEND.info.name, backend.word().to_owned()),
+                    (LIGHT_IMAGE.info.name, name.word().to_owned()),
+                ],
+                why: "coverage of an image is looked up in a 4D texture",
+            });
+        }
+        Ok(Self {
+            backend,
+            table: CoverageTable {
+                size: params.get(&TEXTURE_SIZE)?,
+                linear: params.get(&TEXTURE_FILTER)? == TextureFilter::Quadlinear,
+                vertex_centred: params.get(&TEXTURE_CENTRED)? == TextureCentred::Vertex,
+            },
+            image,
+        })
+    }
+}
 
 /// How coverage is found.
 #[derive(Clone, Copy)]
@@ -73,7 +188,7 @@ impl Coverings {
         technique: &'static str,
         light: &SoftLight,
         number: usize,
-        params: &Params,
+        settings: &CoveringSettings,
         recording: &mut Recording,
     ) -> Result<Covering, TechniqueError> {
         let shape = light.sides.first().map(|s| s.projector.image());
@@ -81,7 +196,7 @@ impl Coverings {
         if let Some((_, covering)) = known {
             return Ok(*covering);
         }
-        let covering = Covering::create(technique, light, number, params, recording)?;
+        let covering = Covering::create(technique, light, number, settings, recording)?;
         self.0.extend(shape.map(|shape| (shape, covering)));
         Ok(covering)
     }
@@ -92,11 +207,11 @@ impl Covering {
         technique: &'static str,
         light: &SoftLight,
         number: usize,
-        params: &Params,
+        settings: &CoveringSettings,
         recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
-        let image = light_image(params);
-        let wanted = params.get(BACKEND.name) == "texture4d" || image.is_some();
+        let image = settings.image.clone();
+        let wanted = settings.backend == Backend::Texture4d || image.is_some();
         let Some(side) = light.sides.first().filter(|_| wanted) else {
             return Ok(Self::Exact);
         };
@@ -112,20 +227,8 @@ impl Covering {
             }
             (None, shape) => Contents::Plain(shape),
         };
-        let given = params.get(TEXTURE_SIZE.name);
-        let size = given.parse().ok().filter(|n| (2..=90).contains(n));
-        let table = CoverageTable {
-            size: size.ok_or(TechniqueError::BadValue {
-                technique,
-                key: TEXTURE_SIZE.name,
-                value: given.to_owned(),
-                valid: "2 to 90",
-            })?,
-            linear: params.get(TEXTURE_FILTER.name) == "quadlinear",
-            vertex_centred: params.get(TEXTURE_CENTRED.name) == "vertex",
-        };
-        let texture = table::create(&table, &contents, recording)?;
-        Ok(Self::Table(table, texture))
+        let texture = table::create(&settings.table, &contents, recording)?;
+        Ok(Self::Table(settings.table, texture))
     }
 
     /// The coverage texture, where there is one.
@@ -163,16 +266,5 @@ impl Covering {
             }
             .stage(),
         }
-    }
-}
-
-/// The colours on the light, where they are not one.
-pub(crate) fn light_image(params: &Params) -> Option<LightImage> {
-    let frame = params.get(LIGHT_FRAME.name).parse().unwrap_or(0);
-    match params.get(LIGHT_IMAGE.name) {
-        "halves" => Some(LightImage::halves()),
-        "windows" => Some(LightImage::windows()),
-        "fire" => Some(LightImage::fire(frame)),
-        _ => None,
     }
 }

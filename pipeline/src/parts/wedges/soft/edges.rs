@@ -8,12 +8,13 @@
 use glam::DVec3;
 
 use super::outlines::pieces;
+use crate::geometry::caster::CasterPolicy;
 use crate::geometry::silhouette::{Orientation, Silhouette, light_facing};
 use crate::geometry::volume::ShadowVolume;
 use crate::geometry::wedge::hard_plane;
 use crate::geometry::winding::volume_winding;
 use crate::parts::casters::{self, Examined};
-use crate::technique::{Params, TechniqueError};
+use crate::technique::TechniqueError;
 use crate::world::adjacency::EdgeAdjacency;
 use crate::world::light::HardLight;
 use crate::world::mesh::{Mesh, narrow};
@@ -40,21 +41,17 @@ pub(crate) struct Silhouettes {
 }
 
 /// The casters of a scene, examined once for all lights.
-pub(crate) struct Casters<'a> {
+pub(crate) struct SoftCasters<'a> {
     camera: &'a Camera,
     examined: Vec<Examined<'a>>,
 }
 
-impl<'a> Casters<'a> {
-    /// For `technique`, which has the parameter of [`casters`].
-    pub(crate) fn new(
-        technique: &'static str,
-        scene: &'a Scene,
-        params: &Params,
-    ) -> Result<Self, TechniqueError> {
+impl<'a> SoftCasters<'a> {
+    /// All casters of `scene`.
+    pub(crate) fn new(scene: &'a Scene, policy: CasterPolicy) -> Result<Self, TechniqueError> {
         Ok(Self {
             camera: &scene.camera,
-            examined: casters::examine(technique, scene, params)?,
+            examined: casters::examine(scene, policy)?,
         })
     }
 

@@ -9,6 +9,7 @@ use glam::DVec2;
 use crate::geometry::coverage::square_swept;
 
 /// Cells of equal size on the square -1..1, rows from y = -1.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LightImage {
     side: usize,
     /// Linear red, green, blue of each cell.

@@ -22,7 +22,7 @@ use crate::geometry::area_light::AreaLight;
 use crate::geometry::wedge::{Construction, Wedge, WedgeMesh, WedgeStatistics};
 use crate::parts::passes::{self, View};
 use crate::parts::visibility::{full_screen, homogeneous, homogeneous_draw};
-use crate::technique::{Params, Warning};
+use crate::technique::{DrawRole, Warning};
 
 /// By how much the light, and the edge, are enlarged.
 const LARGER_LIGHT: f64 = 2e-4;
@@ -55,6 +55,8 @@ pub(crate) struct WedgePipeline<'a> {
     pub(crate) skip: bool,
     /// Whether pixels are noted, and whether the note is removed.
     pub(crate) note: Note,
+    /// What the draws are for that run the shader.
+    pub(crate) role: DrawRole,
 }
 
 /// What a draw does with the stencil's note.
@@ -108,7 +110,7 @@ impl WedgeArea {
     }
 
     /// Draws over the area, in order.
-    pub(crate) fn draws(&self, view: &View, p: WedgePipeline<'_>) -> Vec<Draw> {
+    pub(crate) fn draws(&self, view: &View, p: WedgePipeline<'_>) -> Vec<(Draw, DrawRole)> {
         let Some((vertices, triangles)) = &self.mesh else {
             let pipeline = RenderPipeline {
                 label: p.label.to_owned(),
@@ -118,7 +120,7 @@ impl WedgeArea {
                 depth_stencil: DepthStencilState::default(),
                 color_targets: p.targets,
             };
-            return vec![full_screen(pipeline, p.textures)];
+            return vec![(full_screen(pipeline, p.textures), p.role)];
         };
         let noted = p.skip && !self.around_eye;
         let vertex = HomogeneousPoints(view.clip_from_world).stage();
@@ -134,7 +136,7 @@ impl WedgeArea {
             };
             let mut draw = homogeneous_draw("note", pipeline, vertices, triangles, Vec::new());
             draw.stencil_reference = [1; 2];
-            draws.push(draw);
+            draws.push((draw, DrawRole::Note));
         }
         let pipeline = RenderPipeline {
             label: p.label.to_owned(),
@@ -146,7 +148,7 @@ impl WedgeArea {
         };
         let mut draw = homogeneous_draw(p.label, pipeline, vertices, triangles, p.textures);
         draw.stencil_reference = [1; 2];
-        draws.push(draw);
+        draws.push((draw, p.role));
         draws
     }
 }
@@ -258,16 +260,7 @@ pub(super) fn longer([a, b]: [DVec3; 2]) -> [DVec3; 2] {
     [a - more, b + more]
 }
 
-/// The construction that parameter `wedge` names.
-pub(crate) fn construction(params: &Params) -> Construction {
-    match params.get("wedge") {
-        "paper3" => Construction::BoundingSphere,
-        "paper4" => Construction::Tight,
-        _ => Construction::Exact,
-    }
-}
-
-/// What wedge construction met, for people.
+/// What wedge construction found, for people.
 pub(crate) fn warnings_of(
     label: &str,
     wedges: &WedgeStatistics,

@@ -35,9 +35,7 @@
 
 pub mod cube;
 mod error;
-mod exr;
 pub mod fit;
-mod hdr;
 mod layout;
 mod placed;
 mod read;

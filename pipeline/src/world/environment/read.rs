@@ -1,12 +1,14 @@
 //! Maps from files: Radiance `.hdr` and OpenEXR, by way of the `image` crate.
 //!
-//! Only this file and its kin ([`super::hdr`], [`super::exr`]) know that crate, and
-//! they only read.
+//! Only this file and its two modules know that crate, and they only read.
+
+mod exr;
+mod hdr;
 
 use std::path::Path;
 
+use super::EnvironmentError;
 use super::layout::Picture;
-use super::{EnvironmentError, exr, hdr};
 use crate::world::files::{self, FileError, SceneFolder};
 use crate::world::warning::SceneWarning;
 
@@ -14,18 +16,18 @@ use crate::world::warning::SceneWarning;
 const NAMES: [&str; 6] = ["px", "nx", "py", "ny", "pz", "nz"];
 
 /// Bytes of a map that are read at most.
-pub(super) const MAX_MAP_BYTES: u64 = 512 << 20;
+const MAX_MAP_BYTES: u64 = 512 << 20;
 
 /// Texels of a map at most: 11,585 x 5,792, far more than its lights are fitted to.
-pub(super) const MAX_TEXELS: usize = 1 << 26;
+const MAX_TEXELS: usize = 1 << 26;
 
 /// A picture as its file has it.
 #[derive(Debug)]
-pub(super) struct Read {
-    pub(super) size: [usize; 2],
+struct Read {
+    size: [usize; 2],
     /// Linear radiance, rows from the top.
-    pub(super) texels: Vec<[f32; 3]>,
-    pub(super) warnings: Vec<SceneWarning>,
+    texels: Vec<[f32; 3]>,
+    warnings: Vec<SceneWarning>,
 }
 
 /// A file, or a folder of six, which must lie in `within` if there is such.

@@ -10,7 +10,7 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use image::{ImageDecoder as _, codecs::openexr::OpenExrDecoder};
 
-use super::read::{MAX_TEXELS, Read};
+use super::{MAX_TEXELS, Read};
 
 /// What all OpenEXR files begin with.
 pub(super) const MAGIC: &[u8] = &[0x76, 0x2f, 0x31, 0x01];

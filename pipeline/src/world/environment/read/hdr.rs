@@ -10,7 +10,7 @@
 use image::ImageDecoder as _;
 use image::codecs::hdr::HdrDecoder;
 
-use super::read::{MAX_TEXELS, Read};
+use super::{MAX_TEXELS, Read};
 use crate::world::warning::SceneWarning;
 
 /// What all Radiance pictures begin with; the program's name follows.

@@ -88,6 +88,9 @@ impl SceneFolder {
 
     /// Refuses what is not in the folder. A path that leads out by its own words is
     /// not even looked at.
+    ///
+    /// # Errors
+    /// See [`FileError`].
     pub fn check(&self, path: &Path) -> Result<(), FileError> {
         if self.outside == Outside::Allowed {
             return Ok(());

@@ -40,8 +40,8 @@ use mesh::Triangles;
 use paint::{Libraries, Paint};
 use scan::{Scan, Tally};
 
-/// Bytes of a model that are read at most: some ten million triangles.
-pub const MAX_OBJ_BYTES: u64 = 512 << 20;
+/// Bytes of a model that are read at most: some four million triangles.
+pub const MAX_OBJ_BYTES: u64 = 256 << 20;
 
 /// Bytes of a material library that are read at most.
 pub const MAX_MTL_BYTES: u64 = 16 << 20;

@@ -1,6 +1,8 @@
 //! One pass over OBJ text: what it says, statement by statement, with the lines
 //! of what is wrong or left out.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::lines::{self, keyword_and_rest, logical_lines, without_comment};
@@ -27,6 +29,8 @@ pub(super) struct Scan {
     /// Statements that are not read.
     pub(super) unsupported: Tally,
     objects: Vec<String>,
+    /// Places of names in `materials`.
+    material_numbers: BTreeMap<String, u32>,
     material: Option<u32>,
 }
 
@@ -107,13 +111,13 @@ impl Scan {
     }
 
     fn use_material(&mut self, name: &str) {
-        // Files name one material after the other, so the last ones are near.
-        let known = self.materials.iter().rposition(|n| n == name);
-        let index = known.unwrap_or_else(|| {
+        let known = self.material_numbers.get(name).copied();
+        self.material = Some(known.unwrap_or_else(|| {
+            let number = self.materials.len() as u32;
             self.materials.push(name.to_owned());
-            self.materials.len() - 1
-        });
-        self.material = Some(index as u32);
+            self.material_numbers.insert(name.to_owned(), number);
+            number
+        }));
     }
 
     /// `v x y z`; further numbers (a weight or a colour) are ignored.

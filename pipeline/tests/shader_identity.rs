@@ -85,7 +85,7 @@ fn settings(technique: &dyn Technique) -> Vec<Vec<String>> {
     let base = small(technique);
     let mut all = vec![base.clone()];
     for info in technique.params() {
-        let words = info.valid.split('|');
+        let words = info.domain.words().iter();
         for value in words.filter(|v| is_settable(v)) {
             let mut set = base.clone();
             set.retain(|s| !s.starts_with(&format!("{}=", info.name)));

@@ -7,6 +7,7 @@ use gnomon_raster::{Gpu, GpuConfig, Subresource};
 use super::light::LightSphere;
 use super::report::LinkedReport;
 use super::volume::SoftVolume;
+use crate::geometry::caster::CasterPolicy;
 use crate::geometry::wedge::paper1::{LinkedSettings, smoothed};
 use crate::parts::casters::{self, Examined};
 use crate::parts::passes::View;
@@ -47,9 +48,7 @@ struct Reference<'a> {
 impl<'a> Reference<'a> {
     fn new(scene: &'a Scene) -> Self {
         let sphere = LightSphere::of(&scene.lights[0]).unwrap();
-        let technique = techniques::find("penumbra-wedges").unwrap();
-        let params = Params::defaults(technique);
-        let casters = casters::examine(technique.name(), scene, &params).unwrap();
+        let casters = casters::examine(scene, CasterPolicy::RequireClosed).unwrap();
         let mut met = LinkedReport::default();
         let settings = LinkedSettings::default();
         let volumes = casters

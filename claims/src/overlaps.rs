@@ -1,7 +1,7 @@
 //! How many penumbra wedges cover a pixel's surface: a histogram from what draws
 //! wrote.
 
-use gnomon_raster::{AccessObserver, BlockAccess};
+use gnomon_raster::{AccessBatch, AccessObserver, BlockAccess, Wants};
 
 use gnomon_pipeline::technique::{PassRole, Roles};
 
@@ -28,7 +28,7 @@ impl Overlaps {
             writes: vec![0; width * height],
             roles: frame.roles,
         };
-        gpu.submit_observed(&frame.recording.list, &mut counted)?;
+        gpu.submit_observed(&frame.recording.list, Wants::default(), &mut counted)?;
         Ok(counted)
     }
 
@@ -58,9 +58,9 @@ impl Overlaps {
 }
 
 impl AccessObserver for Overlaps {
-    fn render_pass(&mut self, pass: usize, _: &str, accesses: &[BlockAccess]) {
+    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
         if self.roles.of_pass(pass) == PassRole::Wedges {
-            accesses.iter().for_each(|a| self.count(a));
+            batch.blocks.iter().for_each(|a| self.count(a));
         }
     }
 }
@@ -84,8 +84,9 @@ mod tests {
             ..BlockAccess::default()
         };
         access.color_write[0] = 0b111 | 1 << 9; // x 8, 9 and outside; x 9, y 1
-        counted.render_pass(0, "quads", &[access]);
-        counted.render_pass(1, "wedges", &[access, access]);
+        counted.batch(0, &AccessBatch::new(&[access]));
+        counted.batch(1, &AccessBatch::new(&[access]));
+        counted.batch(1, &AccessBatch::new(&[access]));
         assert_eq!(counted.histogram(), [97, 0, 3]);
         assert_eq!((counted.writes[8], counted.writes[19]), (2, 2));
     }

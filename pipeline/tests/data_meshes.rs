@@ -76,8 +76,8 @@ fn meshes_are_as_their_table_says() {
 
 fn check(folder: &std::path::Path, expected: &Row) {
     let file = &expected.file;
-    let read = obj::load(&folder.join(file), Shading::Smooth).unwrap();
-    let mesh = &read.mesh;
+    let read = obj::load(&folder.join(file)).unwrap();
+    let mesh = &read.shape.into_mesh(Shading::Smooth).unwrap();
     assert_eq!(mesh.positions().len(), expected.vertices, "{file}");
     assert_eq!(mesh.triangles().len(), expected.faces, "{file}");
     let report = EdgeAdjacency::new(mesh.triangles()).closedness(mesh);
@@ -114,9 +114,8 @@ fn volumes_of_real_meshes_are_closed() {
         "suzanne.obj",
         "skeleton_full.obj",
     ] {
-        let mesh = obj::load(&folder.join("meshes").join(file), Shading::Flat)
-            .unwrap()
-            .mesh;
+        let read = obj::load(&folder.join("meshes").join(file)).unwrap();
+        let mesh = read.shape.into_mesh(Shading::Flat).unwrap();
         let (low, high) = mesh.bounds().unwrap();
         let (centre, size) = ((low + high) / 2.0, high - low);
         let light = HardLight::Point(centre + size * glam::DVec3::new(0.8, 1.7, 0.6));

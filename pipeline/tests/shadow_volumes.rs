@@ -410,8 +410,8 @@ fn check_models(files: &[&str], size: [u32; 2]) {
         return;
     };
     for file in files {
-        let mesh = obj::load(&folder.join(file), Shading::Smooth).unwrap().mesh;
-        let scene = frame_model(file, &mesh);
+        let read = obj::load(&folder.join(file)).unwrap();
+        let scene = frame_model(file, read.shape);
         for format in ["depth-format=d32f", "depth-format=d24"] {
             let of = |m: &str| draw_sized(&scene, "shadow-volumes", &[m, format], size);
             let [zfail, zpass] = ["method=zfail", "method=zpass"].map(of);

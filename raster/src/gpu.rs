@@ -8,7 +8,7 @@ use crate::counters::{ClientTraffic, Counters};
 use crate::error::Error;
 use crate::execute;
 use crate::geometry::{Chunk, ShadedVertices};
-use crate::observer::AccessObserver;
+use crate::observer::{AccessObserver, Wants};
 use crate::recording::{RecordedTexture, Recording};
 use crate::simd::SimdLevel;
 use crate::texture::{Texture, TextureDescriptor, TextureId};
@@ -189,6 +189,15 @@ impl Gpu {
         Ok(())
     }
 
+    /// All textures as they are now, as a recording without commands, which
+    /// [`Gpu::load`] makes again.
+    ///
+    /// # Errors
+    /// None at present.
+    pub fn save(&self) -> Result<Recording, Error> {
+        Recording::of(&self.textures)
+    }
+
     /// Ids of all textures, in the order of their creation.
     pub fn texture_ids(&self) -> impl Iterator<Item = TextureId> + use<> {
         (0..self.textures.len() as u32).map(TextureId)
@@ -226,15 +235,18 @@ impl Gpu {
         execute::submit(self, list, None)
     }
 
-    /// As [`Gpu::submit`], and hands every block-level access to `observer`.
+    /// As [`Gpu::submit`], and hands every block-level access to `observer`, with what it
+    /// `wants`: the same bits and counters, more slowly. Of accesses, no more wait in
+    /// memory than one batch: some 50 MB, or what 32 primitives make.
     ///
     /// # Errors
     /// As [`Gpu::submit`].
     pub fn submit_observed(
         &mut self,
         list: &CommandList,
+        wants: Wants,
         observer: &mut dyn AccessObserver,
     ) -> Result<SubmitReport, Error> {
-        execute::submit(self, list, Some(observer))
+        execute::submit(self, list, Some((wants, observer)))
     }
 }

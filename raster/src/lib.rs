@@ -5,6 +5,10 @@
 //! execution tile and SIMD level; every access to depth, stencil, colour and
 //! textures counted. It knows nothing of shadows, files or serialisation.
 //!
+//! A frame is data: a [`Recording`] holds textures, commands and named results, and
+//! stages say which shaders they run ([`shader::ShaderIdentity`]). Who wants to know what
+//! each primitive did to each 8×8 block listens as an [`AccessObserver`].
+//!
 //! ```
 //! use gnomon_raster::shader::{FragmentOutputs, ScalarFragmentOutput, ScalarVertexOutput, per_fragment, per_vertex};
 //! use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
@@ -80,7 +84,7 @@ pub use error::Error;
 pub use format::Format;
 pub use gpu::{DrawReport, Gpu, GpuConfig, PassReport, SubmitReport};
 pub use limits::*;
-pub use observer::{AccessObserver, BlockAccess};
+pub use observer::{AccessBatch, AccessObserver, BlockAccess, Ended, Wants};
 pub use recording::{RecordedTexture, Recording};
 pub use simd::{F32, I32, LANES, Lanes, Mask, SimdLevel, U32};
 pub use state::{AddressMode, FilterMode, Sampler};

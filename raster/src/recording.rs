@@ -49,6 +49,15 @@ pub struct RecordedTexture {
 }
 
 impl Recording {
+    /// `textures` and what they hold.
+    pub(crate) fn of(textures: &[Texture]) -> Result<Self, Error> {
+        let textures = textures.iter().map(RecordedTexture::of);
+        Ok(Self {
+            textures: textures.collect::<Result<_, _>>()?,
+            ..Self::default()
+        })
+    }
+
     /// Adds a texture of zeros.
     ///
     /// # Errors
@@ -191,6 +200,17 @@ fn packed_color(
 }
 
 impl RecordedTexture {
+    fn of(texture: &Texture) -> Result<Self, Error> {
+        let mut recorded = Self {
+            descriptor: texture.descriptor().clone(),
+            contents: BTreeMap::new(),
+        };
+        for image in texture.descriptor().images() {
+            recorded.set(image, texture.read_packed(image)?.into());
+        }
+        Ok(recorded)
+    }
+
     /// What it is.
     #[must_use]
     pub fn descriptor(&self) -> &TextureDescriptor {

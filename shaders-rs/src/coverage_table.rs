@@ -8,7 +8,7 @@
 
 use gnomon_raster::shader::Fragment;
 use gnomon_raster::simd::{each3, each4};
-use gnomon_raster::{F32, I32, Lanes};
+use gnomon_raster::{F32, I32, Lanes, uniforms};
 
 use crate::coverage::Segment;
 use crate::soft_volumes::texel_of;
@@ -24,6 +24,11 @@ pub struct CoverageTable {
     /// the centres of `size` equal cells.
     pub vertex_centred: bool,
 }
+uniforms!(CoverageTable {
+    size,
+    linear,
+    vertex_centred
+});
 
 impl CoverageTable {
     /// Coordinate, -1..1, of entry `index` along one dimension.

@@ -13,6 +13,10 @@
 //!
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
 //! that uses it decides targets, blending and tests.
+//!
+//! To add one: the struct with its `uniforms!` line and its implementation in the file
+//! of its family, and a line with name and version in `stages!` below. Raise the
+//! version when what it computes changes.
 
 pub mod convolution;
 pub mod coverage;
@@ -26,44 +30,108 @@ pub mod surface;
 pub mod transform;
 mod vector;
 
-use gnomon_raster::shader::{FragmentStage, VertexStage};
+use gnomon_raster::shader::{FragmentStage, Named, ShaderTable, ShaderTableError, VertexStage};
 
-/// Gives shaders a method that compiles them here and not in every user's crate.
+/// Gives shaders their names and versions, a method that compiles them here and not in
+/// every user's crate, and a place in [`table`].
 macro_rules! stages {
-    ($stage:ident: $($shader:ty),+) => { $(
+    (
+        vertex { $($vertex:ty: $vertex_name:literal $vertex_version:literal),+ $(,)? }
+        fragment { $($fragment:ty: $fragment_name:literal $fragment_version:literal),+ $(,)? }
+    ) => {
+        $(stages!(@one VertexStage $vertex: $vertex_name $vertex_version);)+
+        $(stages!(@one FragmentStage $fragment: $fragment_name $fragment_version);)+
+
+        fn all() -> Result<ShaderTable, ShaderTableError> {
+            let mut table = ShaderTable::default();
+            $(table.add_vertex::<$vertex>()?;)+
+            $(table.add_fragment::<$fragment>()?;)+
+            Ok(table)
+        }
+    };
+    (@one $stage:ident $shader:ty: $name:literal $version:literal) => {
+        impl Named for $shader {
+            const NAME: &'static str = $name;
+            const VERSION: u32 = $version;
+        }
+
         impl $shader {
             /// The shader, ready for a render pipeline.
             #[must_use]
             pub fn stage(self) -> $stage {
-                self.into()
+                $stage::named(self)
             }
         }
-    )+ };
+    };
 }
-stages!(VertexStage:
-    transform::Points, transform::HomogeneousPoints, transform::Surfaces, transform::FullScreen,
-    transform::Facets, soft_volumes::HardQuads, soft_volumes::EyeCount);
-stages!(FragmentStage:
-    surface::Constant, surface::Lambert, surface::Phong, surface::AmbientWithPosition,
-    surface::FacetValue,
-    surface::Shadowed<surface::Lambert>, surface::Shadowed<surface::Phong>,
-    soft_volumes::HardCount, soft_volumes::Resolve,
-    split_volumes::SplitPenumbra, split_volumes::CombineGroups, split_volumes::AddVisibility,
-    soft_volumes::Penumbra<soft_volumes::ExactCoverage>,
-    soft_volumes::Penumbra<coverage_table::CoverageTable>);
-stages!(FragmentStage:
-    penumbra::crossing::WedgeCrossing, penumbra::inside::WedgeInside,
-    penumbra::buffers::TileDepths, penumbra::buffers::Boundary,
-    penumbra::buffers::StencilCounts);
-stages!(FragmentStage:
-    convolution::basis::BasisImages, convolution::basis::DepthImage,
-    convolution::prefilter::Halve, convolution::prefilter::CopyLevel,
-    convolution::prefilter::LessMean, convolution::prefilter::SumStep,
-    convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>,
-    convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>,
-    convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>);
-stages!(FragmentStage:
-    light_view::PlanarDepth,
-    shadow_maps::Shadow<shadow_maps::BoxTaps>, shadow_maps::Shadow<shadow_maps::CubicTaps>,
-    shadow_maps::Shadow<shadow_maps::SampledKernel>,
-    shadow_maps::Shadow<shadow_maps::WholeKernel>);
+
+/// All shaders of this crate, by name.
+///
+/// # Panics
+/// Two shaders have one name, which a test rules out.
+#[must_use]
+pub fn table() -> ShaderTable {
+    all().expect("a test holds names apart")
+}
+
+stages! {
+    vertex {
+        transform::Points: "transform.points" 1,
+        transform::HomogeneousPoints: "transform.homogeneous-points" 1,
+        transform::Surfaces: "transform.surfaces" 1,
+        transform::FullScreen: "transform.full-screen" 1,
+        transform::Facets: "transform.facets" 1,
+        soft_volumes::HardQuads: "soft-volumes.hard-quads" 1,
+        soft_volumes::EyeCount: "soft-volumes.eye-count" 1,
+    }
+    fragment {
+        surface::Constant: "surface.constant" 1,
+        surface::Lambert: "surface.lambert" 1,
+        surface::Phong: "surface.phong" 1,
+        surface::AmbientWithPosition: "surface.ambient-with-position" 1,
+        surface::FacetValue: "surface.facet-value" 1,
+        surface::Shadowed<surface::Lambert>: "surface.shadowed-lambert" 1,
+        surface::Shadowed<surface::Phong>: "surface.shadowed-phong" 1,
+        soft_volumes::HardCount: "soft-volumes.hard-count" 1,
+        soft_volumes::Resolve: "soft-volumes.resolve" 1,
+        soft_volumes::Penumbra<soft_volumes::ExactCoverage>: "soft-volumes.penumbra-exact" 1,
+        soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 1,
+        split_volumes::SplitPenumbra: "split-volumes.penumbra" 1,
+        split_volumes::CombineGroups: "split-volumes.combine-groups" 1,
+        split_volumes::AddVisibility: "split-volumes.add-visibility" 1,
+        penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 1,
+        penumbra::inside::WedgeInside: "penumbra.wedge-inside" 1,
+        penumbra::buffers::TileDepths: "penumbra.tile-depths" 1,
+        penumbra::buffers::Boundary: "penumbra.boundary" 1,
+        penumbra::buffers::StencilCounts: "penumbra.stencil-counts" 1,
+        convolution::basis::BasisImages: "convolution.basis-images" 1,
+        convolution::basis::DepthImage: "convolution.depth-image" 1,
+        convolution::prefilter::Halve: "convolution.halve" 1,
+        convolution::prefilter::CopyLevel: "convolution.copy-level" 1,
+        convolution::prefilter::LessMean: "convolution.less-mean" 1,
+        convolution::prefilter::SumStep: "convolution.sum-step" 1,
+        convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>:
+            "convolution.shadow-mipmaps" 1,
+        convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>:
+            "convolution.shadow-float-tables" 1,
+        convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>:
+            "convolution.shadow-integer-tables" 1,
+        light_view::PlanarDepth: "light-view.planar-depth" 1,
+        shadow_maps::Shadow<shadow_maps::BoxTaps>: "shadow-maps.box-taps" 1,
+        shadow_maps::Shadow<shadow_maps::CubicTaps>: "shadow-maps.cubic-taps" 1,
+        shadow_maps::Shadow<shadow_maps::SampledKernel>: "shadow-maps.sampled-kernel" 1,
+        shadow_maps::Shadow<shadow_maps::WholeKernel>: "shadow-maps.whole-kernel" 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shader_has_a_name_of_its_own() {
+        let table = all().unwrap();
+        assert_eq!(table.vertex_shaders().count(), 7);
+        assert_eq!(table.fragment_shaders().count(), 33);
+    }
+}

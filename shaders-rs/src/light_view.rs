@@ -12,7 +12,7 @@
 use gnomon_raster::math::{dot3, length};
 use gnomon_raster::shader::{Fragment, FragmentShader};
 use gnomon_raster::simd::each3;
-use gnomon_raster::{F32, Lanes, Mask};
+use gnomon_raster::{F32, Lanes, Mask, uniforms};
 
 use crate::surface::PixelRays;
 use crate::vector::each2;
@@ -28,6 +28,7 @@ pub struct DepthRange {
     /// Stored as 1, and what is cleared to: nothing in the way.
     pub far: f32,
 }
+uniforms!(DepthRange { near, far });
 
 impl DepthRange {
     /// The stored value of a distance; not limited.
@@ -53,6 +54,7 @@ pub enum Projection {
     /// Along one direction, for directional lights; places are lengths (x, y).
     Orthographic,
 }
+uniforms!(enum Projection { 0: Perspective, 1: Orthographic });
 
 /// Scaled depth in red of attachment 0, limited to 0..=1. Varyings are those of
 /// [`crate::transform::Facets`], distances from the plane being those of a
@@ -77,6 +79,13 @@ pub struct PlanarDepth {
     /// The most that it does, world units.
     pub slope_limit: f32,
 }
+uniforms!(PlanarDepth {
+    rays,
+    projection,
+    range,
+    slope,
+    slope_limit
+});
 
 impl FragmentShader for PlanarDepth {
     #[inline(always)]
@@ -157,6 +166,7 @@ pub enum ViewRegion {
     /// The pyramid of a cube's face: |x| and |y| at most z.
     Face,
 }
+uniforms!(enum ViewRegion { 0: Front, 1: Face });
 
 /// From world space to a light view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,6 +188,16 @@ pub struct LightMapping {
     /// Which positions belong to the view.
     pub region: ViewRegion,
 }
+uniforms!(LightMapping {
+    centre,
+    axes,
+    projection,
+    scale,
+    offset,
+    range,
+    size,
+    region
+});
 
 /// A position in a light view.
 #[derive(Clone, Copy)]

@@ -13,7 +13,7 @@
 use std::sync::Arc;
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
-use gnomon_raster::{F32, I32, Lanes, Mask};
+use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
 use crate::light_view::LightMapping;
 use crate::soft_volumes::texel_of;
@@ -57,6 +57,7 @@ pub enum ShadowTo {
     /// Minus this much of what is not seen, to be added: one of several views.
     Share(f32),
 }
+uniforms!(enum ShadowTo { 0: Visibility, 1: Share(share) });
 
 /// Looks up shadows of one view.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +71,7 @@ pub struct Shadow<F> {
     /// What is written.
     pub to: ShadowTo,
 }
+uniforms!(Shadow<F> { mapping, bias, filter, to });
 
 impl<F: ShadowFilter> FragmentShader for Shadow<F> {
     fn outputs(&self) -> FragmentOutputs {
@@ -145,6 +147,7 @@ fn blocks<L: Lanes>(
 /// hard shadow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoxTaps(pub u32);
+uniforms!(BoxTaps(side));
 
 impl ShadowFilter for BoxTaps {
     #[inline(always)]
@@ -174,6 +177,7 @@ impl ShadowFilter for BoxTaps {
 /// The cubic B-spline over 4 x 4 texels: smooth, and never negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CubicTaps;
+uniforms!(CubicTaps);
 
 impl ShadowFilter for CubicTaps {
     #[inline(always)]
@@ -236,6 +240,11 @@ pub struct SampledKernel {
     /// Where depths are compared.
     pub filter: Arc<[[f32; 2]]>,
 }
+uniforms!(SampledKernel {
+    light_half,
+    search,
+    filter
+});
 
 impl ShadowFilter for SampledKernel {
     #[inline(always)]
@@ -305,6 +314,7 @@ pub struct WholeKernel {
     /// Half width of the light along the picture's axes, world units.
     pub light_half: [f32; 2],
 }
+uniforms!(WholeKernel { light_half });
 
 impl ShadowFilter for WholeKernel {
     #[inline(always)]

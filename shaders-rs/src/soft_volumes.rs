@@ -11,7 +11,7 @@ use gnomon_raster::shader::{
     Fragment, FragmentOutputs, FragmentShader, Interpolation, Vertex, VertexShader,
 };
 use gnomon_raster::simd::{each3, each4};
-use gnomon_raster::{F32, I32, Lanes, Mask};
+use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
 use crate::coverage::outlined;
 use crate::coverage::{Edge, Projector, Segment, clip, covered};
@@ -66,6 +66,7 @@ pub(crate) fn receiver<L: Lanes>(
 /// Normal of the plane through the light's centre and an edge, out of the umbra.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HardPlane(pub [f32; 3]);
+uniforms!(HardPlane(normal));
 
 impl HardPlane {
     /// Whether positions relative to the light's centre are on the umbra side.
@@ -92,6 +93,7 @@ fn umbra_side<L: Lanes>(l: L, normal: [F32<L>; 3], from: [F32<L>; 3]) -> Mask<L>
 /// where the eye is on its umbra side, else 0. Four flat varyings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HardQuads(pub ClipFromWorld);
+uniforms!(HardQuads(clip_from_world));
 
 impl VertexShader for HardQuads {
     fn varyings(&self) -> &[Interpolation] {
@@ -120,6 +122,7 @@ pub enum CountTo {
     /// Alpha of attachments 0 and 1, in steps of 1/255: leaving, and entering.
     Alpha,
 }
+uniforms!(enum CountTo { 0: Visibility, 1: Alpha });
 
 /// Counts hard shadow quads between the eye and the surface: those whose plane
 /// has them on different sides. It needs no depth test and no caps, and is right
@@ -131,6 +134,7 @@ pub struct HardCount {
     /// Where the count goes.
     pub to: CountTo,
 }
+uniforms!(HardCount { centre, to });
 
 impl FragmentShader for HardCount {
     fn outputs(&self) -> FragmentOutputs {
@@ -167,6 +171,7 @@ impl FragmentShader for HardCount {
 /// over the whole screen, as if a quad had been entered so many times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EyeCount(pub f32);
+uniforms!(EyeCount(count));
 
 impl VertexShader for EyeCount {
     fn varyings(&self) -> &[Interpolation] {
@@ -195,6 +200,7 @@ pub enum CoverTo {
     /// Coverage in 6 of 8 bits to attachment 0 on the umbra side, else to 1.
     SixBits,
 }
+uniforms!(enum CoverTo { 0: Visibility, 1: Copied, 2: SixBits });
 
 /// Largest coverage in 6 of 8 bits: four of them always fit.
 pub const SIX_BITS: f32 = 63.0;
@@ -217,6 +223,7 @@ pub trait Covering: Copy + Send + Sync {
 /// In closed form, all colours alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactCoverage;
+uniforms!(ExactCoverage);
 
 impl Covering for ExactCoverage {
     const TEXTURES: usize = 2;
@@ -264,6 +271,7 @@ pub struct Penumbra<C> {
     /// Where the coverage goes.
     pub to: CoverTo,
 }
+uniforms!(Penumbra<C> { light, covering, edge, plane, to });
 
 impl<C: Covering> FragmentShader for Penumbra<C> {
     fn outputs(&self) -> FragmentOutputs {
@@ -323,6 +331,7 @@ pub enum Resolve {
     /// coverage over 63, and one per count of the alphas.
     SixBits,
 }
+uniforms!(enum Resolve { 0: Copy, 1: SixBits });
 
 impl FragmentShader for Resolve {
     fn outputs(&self) -> FragmentOutputs {

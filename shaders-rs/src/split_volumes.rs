@@ -14,7 +14,7 @@
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::simd::{each3, each4};
-use gnomon_raster::{F32, I32, Lanes};
+use gnomon_raster::{F32, I32, Lanes, uniforms};
 
 use crate::coverage::{Edge, Projector, Segment, clip, covered};
 use crate::soft_volumes::{HardPlane, own_texels, reads, receiver, texel_of};
@@ -41,6 +41,7 @@ pub struct Tables {
     /// The split: texture 3.
     pub split: bool,
 }
+uniforms!(Tables { coverage, split });
 
 /// Which buffers a wedge is drawn to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +53,7 @@ pub enum Halves {
     /// The subtractive one alone, attachment 0: all other fragments.
     Outer,
 }
+uniforms!(enum Halves { 0: Both, 1: Inner, 2: Outer });
 
 /// The penumbra of one edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +69,13 @@ pub struct SplitPenumbra {
     /// Where the coverage goes.
     pub halves: Halves,
 }
+uniforms!(SplitPenumbra {
+    light,
+    edge,
+    plane,
+    tables,
+    halves
+});
 
 impl FragmentShader for SplitPenumbra {
     fn outputs(&self) -> FragmentOutputs {
@@ -210,6 +219,7 @@ pub struct CombineGroups {
     /// Nothing is combined so far.
     pub first: bool,
 }
+uniforms!(CombineGroups { first });
 
 impl FragmentShader for CombineGroups {
     fn outputs(&self) -> FragmentOutputs {
@@ -252,6 +262,7 @@ pub enum Combination {
     /// Half way from the largest to the sum, whatever the order.
     Bounded,
 }
+uniforms!(enum Combination { 0: Sum, 1: Paper, 2: Bounded });
 
 /// Adds the visibility that [`CombineGroups`] leads to, times a weight; texture 0
 /// is its result.
@@ -262,6 +273,7 @@ pub struct AddVisibility {
     /// Share of the light.
     pub weight: f32,
 }
+uniforms!(AddVisibility { rule, weight });
 
 impl FragmentShader for AddVisibility {
     fn outputs(&self) -> FragmentOutputs {

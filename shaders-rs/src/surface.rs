@@ -10,13 +10,14 @@
 use gnomon_raster::math::{dot3, length};
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::simd::{each3, each4};
-use gnomon_raster::{F32, I32, Lanes};
+use gnomon_raster::{F32, I32, Lanes, uniforms};
 
 use crate::vector::V3;
 
 /// One colour everywhere: the ambient pass, or unlit geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant(pub [f32; 4]);
+uniforms!(Constant(color));
 
 impl FragmentShader for Constant {
     fn constant(&self) -> Option<[f32; 4]> {
@@ -46,6 +47,12 @@ pub struct PixelRays {
     /// Change to the next row.
     pub down: [f32; 3],
 }
+uniforms!(PixelRays {
+    eye,
+    first,
+    right,
+    down
+});
 
 /// Ambient light in attachment 0, and in attachment 1 the world-space position,
 /// with w 1 where shadow may fall and 0 where it may not. Varyings are those of
@@ -64,6 +71,11 @@ pub struct AmbientWithPosition {
     /// The camera.
     pub rays: PixelRays,
 }
+uniforms!(AmbientWithPosition {
+    ambient,
+    receives,
+    rays
+});
 
 /// Cosine between ray and facet, below which positions are interpolated.
 const EDGE_ON: f32 = 1e-3;
@@ -97,6 +109,7 @@ impl FragmentShader for AmbientWithPosition {
 /// The first flat varying of [`crate::transform::Facets`] in all channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetValue;
+uniforms!(FacetValue);
 
 impl FragmentShader for FacetValue {
     #[inline(always)]
@@ -125,6 +138,7 @@ pub struct Shadowed<S> {
     /// Visibility of each colour by itself; else red's for all.
     pub coloured: bool,
 }
+uniforms!(Shadowed<S> { surface, scale, offset, coloured });
 
 impl<S: Reflection> FragmentShader for Shadowed<S> {
     fn outputs(&self) -> FragmentOutputs {
@@ -158,6 +172,7 @@ pub struct Lambert {
     /// The light: `(position, 1)` or `(direction towards it, 0)`, world space.
     pub light: [f32; 4],
 }
+uniforms!(Lambert { diffuse, light });
 
 impl Reflection for Lambert {
     #[inline(always)]
@@ -194,6 +209,12 @@ pub struct Phong {
     /// The eye in world space.
     pub eye: [f32; 3],
 }
+uniforms!(Phong {
+    lambert,
+    specular,
+    shininess,
+    eye
+});
 
 impl Reflection for Phong {
     #[inline(always)]

@@ -7,12 +7,13 @@
 
 use gnomon_raster::shader::{Interpolation, Vertex, VertexShader};
 use gnomon_raster::simd::{each3, each4};
-use gnomon_raster::{F32, LANES, Lanes};
+use gnomon_raster::{F32, LANES, Lanes, uniforms};
 
 /// Rows of the matrix; row r of the product is
 /// `((m[r][0]·x + m[r][1]·y) + m[r][2]·z) + m[r][3]·w`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipFromWorld(pub [[f32; 4]; 4]);
+uniforms!(ClipFromWorld(rows));
 
 impl ClipFromWorld {
     /// Clip-space position of 16 vertices.
@@ -31,6 +32,7 @@ impl ClipFromWorld {
 /// Attributes x, y, z; w is 1. No varyings. Further attributes are ignored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Points(pub ClipFromWorld);
+uniforms!(Points(clip_from_world));
 
 impl VertexShader for Points {
     #[inline(always)]
@@ -43,6 +45,7 @@ impl VertexShader for Points {
 /// Attributes x, y, z, w: points and directions. No varyings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HomogeneousPoints(pub ClipFromWorld);
+uniforms!(HomogeneousPoints(clip_from_world));
 
 impl VertexShader for HomogeneousPoints {
     #[inline(always)]
@@ -59,6 +62,7 @@ impl VertexShader for HomogeneousPoints {
 /// in 0..3, the world-space position in 3..6.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surfaces(pub ClipFromWorld);
+uniforms!(Surfaces(clip_from_world));
 
 impl VertexShader for Surfaces {
     fn varyings(&self) -> &[Interpolation] {
@@ -84,6 +88,7 @@ impl VertexShader for Surfaces {
 /// Varyings: position in 0..3, the plane in 3..7, flat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facets(pub ClipFromWorld);
+uniforms!(Facets(clip_from_world));
 
 impl VertexShader for Facets {
     fn varyings(&self) -> &[Interpolation] {
@@ -107,6 +112,7 @@ impl VertexShader for Facets {
 /// varyings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FullScreen;
+uniforms!(FullScreen);
 
 impl VertexShader for FullScreen {
     #[inline(always)]

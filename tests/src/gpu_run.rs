@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use gnomon_raster::{
-    AccessObserver, BlockAccess, ColorAttachment, CommandList, DepthStencilAttachment, Draw, Error,
-    Gpu, GpuConfig, IndexBuffer, RenderPass, RenderPipeline, Subresource, TextureBinding,
-    TextureDescriptor, TextureId, VertexBuffer,
+    AccessBatch, AccessObserver, BlockAccess, ColorAttachment, CommandList, DepthStencilAttachment,
+    Draw, Error, Gpu, GpuConfig, IndexBuffer, RenderPass, RenderPipeline, Subresource,
+    TextureBinding, TextureDescriptor, TextureId, VertexBuffer, Wants,
 };
 
 use crate::twin::{
@@ -29,11 +29,11 @@ struct Collector {
 }
 
 impl AccessObserver for Collector {
-    fn render_pass(&mut self, pass: usize, _label: &str, accesses: &[BlockAccess]) {
+    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
         if self.passes.len() <= pass {
             self.passes.resize(pass + 1, Vec::new());
         }
-        self.passes[pass].extend_from_slice(accesses);
+        self.passes[pass].extend_from_slice(batch.blocks);
     }
 }
 
@@ -65,7 +65,8 @@ fn run_with(case: &TwinCase, config: GpuConfig, observed: bool) -> Result<Outcom
     };
     let mut collector = Collector::default();
     let report = if observed {
-        gpu.submit_observed(&list, &mut collector)?
+        let wants = Wants { depth_ranges: true };
+        gpu.submit_observed(&list, wants, &mut collector)?
     } else {
         gpu.submit(&list)?
     };
@@ -80,6 +81,32 @@ fn run_with(case: &TwinCase, config: GpuConfig, observed: bool) -> Result<Outcom
             events,
         })
         .collect();
+    download(&gpu, &targets, passes)
+}
+
+/// Runs a case pass by pass, each on a new GPU whose textures are made from the bytes
+/// that the pass before left; events stay empty.
+///
+/// # Errors
+/// What the GPU refuses.
+pub fn run_in_pieces(case: &TwinCase, config: GpuConfig) -> Result<Outcome, Error> {
+    let mut gpu = Gpu::new(config)?;
+    let targets = upload(&mut gpu, case)?;
+    let mut passes = Vec::new();
+    for pass in &case.passes {
+        let saved = gpu.save()?;
+        gpu = Gpu::new(config)?;
+        gpu.load(&saved)?;
+        let list = CommandList {
+            passes: vec![render_pass(pass, &targets)],
+        };
+        let report = gpu.submit(&list)?;
+        passes.extend(report.passes.iter().map(|p| PassOutcome {
+            draws: p.draws.iter().map(|d| d.counters).collect(),
+            clear: p.clear,
+            events: Vec::new(),
+        }));
+    }
     download(&gpu, &targets, passes)
 }
 

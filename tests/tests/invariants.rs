@@ -1,11 +1,12 @@
 //! Laws of the counters, on the GPU's own numbers.
 
+use gnomon_raster::state::{CompareFunction, StencilOperation};
 use gnomon_raster::{BlockAccess, Counters, GpuConfig, Traffic};
 use gnomon_tests::check::config_of;
 use gnomon_tests::compare::attachments;
-use gnomon_tests::gpu_run::{run, run_observed};
+use gnomon_tests::gpu_run::{run, run_in_pieces, run_observed};
 use gnomon_tests::random::random_case;
-use gnomon_tests::twin::render_with;
+use gnomon_tests::twin::{TwinDraw, render_with};
 
 const CASES: u64 = 300;
 
@@ -73,6 +74,27 @@ fn fragments_and_primitives_are_conserved() {
     }
 }
 
+/// Ends are disjoint parts of what is covered.
+fn assert_parted(e: &BlockAccess, what: &str) {
+    let all = match e.ended.hiz {
+        true => vec![e.covered],
+        false => vec![
+            e.ended.bounds,
+            e.ended.stencil,
+            e.ended.depth,
+            e.ended.discarded,
+            e.written(),
+        ],
+    };
+    let pixels: u32 = all.iter().map(|m| m.count_ones()).sum();
+    let union = all.iter().fold(0, |u, m| u | m);
+    assert_eq!(
+        (union, pixels),
+        (e.covered, e.covered.count_ones()),
+        "{what}: {e:?}"
+    );
+}
+
 fn assert_sums(c: &Counters, events: &[&BlockAccess], what: &str) {
     let sum = |f: &dyn Fn(&BlockAccess) -> u64| {
         events
@@ -81,6 +103,25 @@ fn assert_sums(c: &Counters, events: &[&BlockAccess], what: &str) {
             .sum::<u64>()
     };
     assert_eq!(sum(&|e| e.covered), c.fragments.generated, "{what}");
+    let f = &c.fragments;
+    let ends = [
+        sum(&|e| if e.ended.hiz { e.covered } else { 0 }),
+        sum(&|e| e.ended.bounds),
+        sum(&|e| e.ended.stencil),
+        sum(&|e| e.ended.depth),
+        sum(&|e| e.ended.discarded),
+        sum(&|e| e.written()),
+    ];
+    let counted = [
+        f.hiz_killed,
+        f.bounds_failed,
+        f.stencil_failed,
+        f.depth_failed,
+        f.discarded,
+        f.written,
+    ];
+    assert_eq!(ends, counted, "{what}: ends");
+    events.iter().for_each(|e| assert_parted(e, what));
     let t = &c.traffic;
     let accesses = |t: &Traffic| [t.read_accesses, t.write_accesses];
     assert_eq!(
@@ -157,4 +198,114 @@ fn an_observer_and_skipping_change_no_bit() {
         };
         assert_eq!(draws(&plain), draws(&slow), "seed {seed}");
     }
+}
+
+/// What zmin/zmax say about a depth test, from an event's ranges alone.
+fn decided(compare: CompareFunction, e: &BlockAccess) -> Option<bool> {
+    let ([a, b], [min, max]) = (e.span, e.stored);
+    let same = a == b && min == max && a == min;
+    let apart = b < min || a > max;
+    let (passes, fails) = match compare {
+        CompareFunction::Less => (b < min, a >= max),
+        CompareFunction::LessEqual => (b <= min, a > max),
+        CompareFunction::Greater => (a > max, b <= min),
+        CompareFunction::GreaterEqual => (a >= max, b < min),
+        CompareFunction::Equal => (same, apart),
+        CompareFunction::NotEqual => (apart, same),
+        CompareFunction::Never | CompareFunction::Always => (false, false),
+    };
+    match (passes, fails) {
+        (true, _) => Some(true),
+        (_, true) => Some(false),
+        _ => None,
+    }
+}
+
+/// Whether something can happen to fragments of that side that fail the depth test.
+fn acts_on_failure(d: &TwinDraw, front: bool) -> bool {
+    let s = &d.depth_stencil.stencil;
+    let face = if front { &s.front } else { &s.back };
+    let effective = |op| op != StencilOperation::Keep && face.write_mask != 0;
+    effective(face.fail_op) || effective(face.depth_fail_op)
+}
+
+/// Blocks tested, culled and accepted, fragments killed, and depths read, had zmin/zmax
+/// of 8×8 blocks been used in a run that did not.
+fn what_if(d: &TwinDraw, attached: bool, events: &[&BlockAccess]) -> [u64; 5] {
+    let state = &d.depth_stencil.depth;
+    let looks = !matches!(
+        state.compare,
+        CompareFunction::Never | CompareFunction::Always
+    );
+    let own_depth = d.program.as_ref().is_some_and(|p| p.depth.is_some());
+    let used = attached && looks && state.bounds.is_none() && !own_depth;
+    let mut sums = [0; 5];
+    for e in events {
+        let decision = if used {
+            decided(state.compare, e)
+        } else {
+            None
+        };
+        let culled = decision == Some(false) && !acts_on_failure(d, e.front);
+        let pixels = |m: u64| u64::from(m.count_ones());
+        sums[0] += u64::from(used);
+        sums[1] += u64::from(culled);
+        sums[2] += u64::from(decision.is_some() && !culled);
+        sums[3] += if culled { pixels(e.covered) } else { 0 };
+        sums[4] += if decision.is_none() {
+            pixels(e.z_read)
+        } else {
+            0
+        };
+    }
+    sums
+}
+
+/// The events of a run without skipping hold all that skipping needs: its counters
+/// follow from them, draw by draw.
+#[test]
+fn skipping_follows_from_the_events_of_a_run_without() {
+    let mut seen = [0; 5];
+    for seed in 0..CASES {
+        let case = random_case(seed);
+        let with = |skip| GpuConfig {
+            skip,
+            ..config_of(seed)
+        };
+        let skipped = run(&case, with(true)).unwrap();
+        let observed = run_observed(&case, with(false)).unwrap();
+        for (k, (pass, of)) in observed.passes.iter().zip(&case.passes).enumerate() {
+            for (d, draw) in of.draws.iter().enumerate() {
+                let mine = pass.events.iter().filter(|e| e.draw == d as u32);
+                let events: Vec<_> = mine.collect();
+                let found = what_if(draw, of.depth.is_some(), &events);
+                let c = &skipped.passes[k].draws[d];
+                let counted = [
+                    c.tiles.tested,
+                    c.tiles.culled,
+                    c.tiles.accepted,
+                    c.fragments.hiz_killed,
+                    c.traffic.z.read_accesses,
+                ];
+                assert_eq!(found, counted, "seed {seed}, pass {k}, draw {d}");
+                (0..5).for_each(|i| seen[i] += counted[i]);
+            }
+        }
+    }
+    assert!(seen.iter().all(|n| *n > 1000), "{seen:?}");
+}
+
+/// Textures that are made again from their bytes are the same textures: attachments and
+/// counters of later passes, zmin/zmax tests included, do not tell them apart.
+#[test]
+fn textures_go_through_bytes_unseen() {
+    let mut passes = 0;
+    for seed in 0..CASES {
+        let (case, config) = (random_case(seed), config_of(seed));
+        let whole = run(&case, config).unwrap();
+        let pieces = run_in_pieces(&case, config).unwrap();
+        assert!(whole == pieces, "seed {seed} in {config:?}");
+        passes += case.passes.len().saturating_sub(1);
+    }
+    assert!(passes > 50, "{passes} passes after others");
 }

@@ -59,6 +59,7 @@ impl EnvArgs {
         let (map, fit) = (MapSettings::default(), FitSettings::default());
         Some(EnvironmentRequest {
             map: self.env.clone()?,
+            folder: None,
             settings: MapSettings {
                 side: self.env_side.unwrap_or(map.side),
                 turn: self.env_turn.unwrap_or(map.turn),

@@ -3,9 +3,11 @@
 mod environment;
 mod execution;
 mod listing;
+mod scene;
 mod values;
 
 pub(crate) use environment::EnvArgs;
 pub(crate) use execution::GpuArgs;
 pub(crate) use listing::ListArgs;
+pub(crate) use scene::SceneArgs;
 pub(crate) use values::{parse_setting, parse_size, parse_time};

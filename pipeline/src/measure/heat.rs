@@ -2,7 +2,7 @@
 //! pass, for overlays. Rendered by [`record`] with an access observer; slower
 //! than [`crate::measure::render::render`], and the same bits.
 
-use gnomon_raster::{AccessObserver, BlockAccess, Format, Gpu};
+use gnomon_raster::{AccessBatch, AccessObserver, BlockAccess, Format, Gpu, PassReport, Wants};
 
 use crate::measure::render::{RenderError, RenderSettings};
 use crate::technique::{Frame, Params, Technique};
@@ -83,6 +83,19 @@ impl PassHeat {
             bytes: vec![BlockBytes::default(); across as usize * down as usize],
         }
     }
+
+    /// Adds an access to an image `width` pixels and `across` blocks wide.
+    fn add(&mut self, access: &BlockAccess, bytes: &BlockBytes, width: u32, across: u32) {
+        let [column, row] = access.block.map(u32::from);
+        self.bytes[(row * across + column) as usize].add(bytes);
+        let mut left = access.covered;
+        while left != 0 {
+            let bit = left.trailing_zeros();
+            let (x, y) = (8 * column + bit % 8, 8 * row + bit / 8);
+            self.overdraw[(y * width + x) as usize] += 1;
+            left &= left - 1;
+        }
+    }
 }
 
 /// Renders one frame and records where its work went.
@@ -99,13 +112,15 @@ pub fn record(
     let mut gpu = Gpu::new(settings.gpu)?;
     gpu.load(&frame.recording)?;
     let mut recorder = Recorder::new(&gpu, &frame, settings.size)?;
-    gpu.submit_observed(&frame.recording.list, &mut recorder)?;
+    gpu.submit_observed(&frame.recording.list, Wants::default(), &mut recorder)?;
     Ok(recorder.heat)
 }
 
 /// Adds up accesses; what each of them costs in bytes.
 struct Recorder {
     heat: Heat,
+    /// The pass that is being drawn.
+    pass: PassHeat,
     depth_bytes: u64,
     color_bytes: u64,
 }
@@ -113,12 +128,14 @@ struct Recorder {
 impl Recorder {
     fn new(gpu: &Gpu, frame: &Frame, size: [u32; 2]) -> Result<Self, RenderError> {
         let format = |id| Ok::<Format, RenderError>(gpu.texture(id)?.descriptor().format);
+        let blocks = size.map(|s| s.div_ceil(8));
         Ok(Self {
             heat: Heat {
                 size,
-                blocks: size.map(|s| s.div_ceil(8)),
+                blocks,
                 passes: Vec::new(),
             },
+            pass: PassHeat::new("", size, blocks),
             depth_bytes: format(frame.outputs.depth_stencil)?.bytes(),
             color_bytes: format(frame.outputs.color)?.bytes(),
         })
@@ -136,20 +153,18 @@ impl Recorder {
 }
 
 impl AccessObserver for Recorder {
-    fn render_pass(&mut self, _: usize, label: &str, accesses: &[BlockAccess]) {
-        let (size, blocks) = (self.heat.size, self.heat.blocks);
-        let mut pass = PassHeat::new(label, size, blocks);
-        for access in accesses {
-            let [column, row] = access.block.map(u32::from);
-            pass.bytes[(row * blocks[0] + column) as usize].add(&self.bytes(access));
-            let mut left = access.covered;
-            while left != 0 {
-                let bit = left.trailing_zeros();
-                let (x, y) = (8 * column + bit % 8, 8 * row + bit / 8);
-                pass.overdraw[(y * size[0] + x) as usize] += 1;
-                left &= left - 1;
-            }
+    fn batch(&mut self, _: usize, batch: &AccessBatch<'_>) {
+        for access in batch.blocks {
+            let bytes = self.bytes(access);
+            self.pass
+                .add(access, &bytes, self.heat.size[0], self.heat.blocks[0]);
         }
-        self.heat.passes.push(pass);
+    }
+
+    fn end(&mut self, _: usize, report: &PassReport) {
+        let next = PassHeat::new("", self.heat.size, self.heat.blocks);
+        let mut done = std::mem::replace(&mut self.pass, next);
+        done.label.clone_from(&report.label);
+        self.heat.passes.push(done);
     }
 }

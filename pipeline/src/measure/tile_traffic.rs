@@ -15,7 +15,7 @@
 use std::collections::BTreeMap;
 
 use gnomon_raster::{
-    AccessObserver, BlockAccess, Counters, Gpu, GpuConfig, SubmitReport, Subresource,
+    AccessBatch, AccessObserver, Counters, Gpu, GpuConfig, SubmitReport, Subresource, Wants,
 };
 use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, Part, TileTest, WedgeInside};
 use gnomon_shaders::penumbra::plane::ScreenPlane;
@@ -87,7 +87,8 @@ pub fn measure(
     let mut gpu = Gpu::new(config)?;
     gpu.load(&built.frame.recording)?;
     let mut covered = Covered::new(&built.wedge_draws);
-    let report = gpu.submit_observed(&built.frame.recording.list, &mut covered)?;
+    let report =
+        gpu.submit_observed(&built.frame.recording.list, Wants::default(), &mut covered)?;
     let depth = gpu
         .texture(built.frame.outputs.depth_stencil)?
         .read_depth(Subresource::default())?;
@@ -127,8 +128,8 @@ struct Covered {
 }
 
 impl AccessObserver for Covered {
-    fn render_pass(&mut self, pass: usize, _label: &str, accesses: &[BlockAccess]) {
-        for access in accesses {
+    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
+        for access in batch.blocks {
             if let Some(&draw) = self.draws.get(&(pass, access.draw)) {
                 self.footprints.push(Footprint {
                     triangle: (draw, access.primitive),

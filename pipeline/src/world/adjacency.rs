@@ -34,6 +34,13 @@ impl Edge<'_> {
         let up = self.uses.iter().filter(|u| u.ascending).count();
         (up, self.uses.len() - up)
     }
+
+    /// Whether as many triangles walk it upwards as downwards, so that none of them
+    /// ends there: two in the inside of a surface, four and more where solids touch.
+    pub fn is_balanced(&self) -> bool {
+        let (up, down) = self.walks();
+        up == down
+    }
 }
 
 /// All edges of a triangle list, sorted by vertex indices.
@@ -147,8 +154,11 @@ impl fmt::Display for OffendingEdge {
 pub struct ClosednessReport {
     /// Edges used by one triangle only.
     pub boundary: usize,
-    /// Edges used by more than two triangles.
+    /// Edges used by more than two triangles, more of them one way than the other.
     pub over_shared: usize,
+    /// Edges used by four and more triangles, as many one way as the other: where
+    /// solids touch. Harmless for closedness.
+    pub shared_evenly: usize,
     /// Edges whose two triangles walk them in the same direction.
     pub flipped: usize,
     /// Triangles that name a vertex twice.
@@ -167,8 +177,9 @@ pub struct ClosednessReport {
 }
 
 impl ClosednessReport {
-    /// Whether every edge joins exactly two triangles that walk it in opposite
-    /// directions and no triangle is degenerate: what a shadow volume needs.
+    /// Whether every edge is walked as often one way as the other and no triangle is
+    /// degenerate: what a shadow volume needs. The triangles then have no boundary,
+    /// and a ray from outside to outside meets as many front faces as back faces.
     pub fn is_closed(&self) -> bool {
         self.boundary + self.over_shared + self.flipped + self.degenerate_triangles == 0
     }
@@ -181,11 +192,14 @@ impl ClosednessReport {
     }
 
     fn count_edge(&mut self, edge: &Edge<'_>) {
-        let walks = edge.walks();
         let (count, first) = match edge.uses.len() {
             1 => (&mut self.boundary, &mut self.first_boundary),
-            2 if walks == (1, 1) => return,
+            2 if edge.is_balanced() => return,
             2 => (&mut self.flipped, &mut self.first_flipped),
+            _ if edge.is_balanced() => {
+                self.shared_evenly += 1;
+                return;
+            }
             _ => (&mut self.over_shared, &mut self.first_over_shared),
         };
         *count += 1;
@@ -269,7 +283,7 @@ mod tests {
                     if low == high { 0 } else { walks(high, low) },
                 );
                 match (up, down) {
-                    (0, 0) | (1, 1) => {}
+                    (up, down) if up == down => {}
                     (1, 0) | (0, 1) => counts[0] += 1,
                     (2, 0) | (0, 2) => counts[2] += 1,
                     _ => counts[1] += 1,
@@ -319,6 +333,15 @@ mod tests {
         let mut doubled = tetrahedron.to_vec();
         doubled.push([1, 0, 2]);
         assert_eq!(report(&doubled).duplicate_triangles, 1);
+
+        // Two solids that share an edge, and one that is there twice.
+        let mut touching = tetrahedron.to_vec();
+        touching.extend(tetrahedron.map(|t| t.map(|i| [0, 1, 4, 5][i as usize])));
+        let r = report(&touching);
+        assert!(r.is_closed() && r.shared_evenly == 1, "{r}");
+        let twice = [tetrahedron, tetrahedron].concat();
+        let r = report(&twice);
+        assert!(r.is_closed() && r.shared_evenly == 6, "{r}");
 
         let mut degenerate = tetrahedron.to_vec();
         degenerate.push([3, 3, 3]);

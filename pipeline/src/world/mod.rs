@@ -4,6 +4,7 @@
 pub mod adjacency;
 pub mod environment;
 pub mod error;
+pub mod files;
 pub mod light;
 pub mod material;
 pub mod mesh;

@@ -1,5 +1,6 @@
 //! Execution of command lists: validation, geometry, tiles, reports.
 
+mod listen;
 mod pass;
 mod prepare;
 mod split;
@@ -7,50 +8,49 @@ mod validate;
 
 use std::time::Instant;
 
+use listen::Listener;
+
 use crate::command::CommandList;
 use crate::error::Error;
 use crate::gpu::{Gpu, SubmitReport};
-use crate::observer::AccessObserver;
+use crate::observer::{AccessObserver, Wants};
 
 /// Validates everything, then executes pass after pass.
 pub(crate) fn submit(
     gpu: &mut Gpu,
     list: &CommandList,
-    observer: Option<&mut dyn AccessObserver>,
+    observer: Option<(Wants, &mut dyn AccessObserver)>,
 ) -> Result<SubmitReport, Error> {
     list.passes
         .iter()
         .try_for_each(|p| validate::render_pass(gpu, p))?;
-    // One visit to the pool for all passes, unless an observer has to stay here.
-    match (gpu.pool.take(), observer) {
-        (Some(pool), None) => {
-            let report = pool.install(|| passes(gpu, list, None));
-            gpu.pool = Some(pool);
-            Ok(report)
-        }
-        (pool, observer) => {
-            gpu.pool = pool;
-            Ok(passes(gpu, list, observer))
-        }
-    }
+    // One visit to the pool for all passes.
+    let Some(pool) = gpu.pool.take() else {
+        return Ok(passes(gpu, list, observer));
+    };
+    let report = pool.install(|| passes(gpu, list, observer));
+    gpu.pool = Some(pool);
+    Ok(report)
 }
 
 /// Executes validated passes in order.
 fn passes(
     gpu: &mut Gpu,
     list: &CommandList,
-    mut observer: Option<&mut dyn AccessObserver>,
+    mut observer: Option<(Wants, &mut dyn AccessObserver)>,
 ) -> SubmitReport {
     let mut report = SubmitReport::default();
     for (number, pass) in list.passes.iter().enumerate() {
         let start = Instant::now();
-        let mut accesses = observer.as_ref().map(|_| Vec::new());
-        let mut done = pass::execute(gpu, pass, accesses.as_mut());
+        let listener = observer
+            .as_mut()
+            .map(|(wants, observer)| Listener::new(*wants, &mut **observer, number));
+        let mut done = pass::execute(gpu, pass, listener);
         done.time = start.elapsed();
-        report.passes.push(done);
-        if let (Some(observer), Some(accesses)) = (observer.as_deref_mut(), accesses) {
-            observer.render_pass(number, &pass.label, &accesses);
+        if let Some((_, observer)) = &mut observer {
+            observer.end(number, &done);
         }
+        report.passes.push(done);
     }
     report
 }

@@ -4,14 +4,16 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
+use super::listen::{self, Listener};
 use super::prepare::{Prepared, Target, prepare};
 use super::split::{self, Fill, Lent};
 use crate::command::{Draw, Referenced, RenderPass};
 use crate::counters::{AccessSizes, Counters, Traffic};
 use crate::geometry::{Chunk, ChunkInput, ShadedVertices, TileGrid, process_chunk, shade_part};
 use crate::gpu::{DrawReport, Gpu, PassReport, Recycled};
-use crate::observer::BlockAccess;
+use crate::observer::{BlockAccess, Wants};
 use crate::shader::VertexBatch;
+use crate::simd::SimdLevel;
 use crate::tile::{ChunkRef, DrawWork, Scratch, TileTarget, run_tile};
 
 /// Primitives of a chunk: enough to fill packets, few enough to share out.
@@ -23,43 +25,38 @@ const VERTEX_RUN: usize = 2048;
 const BATCH: u32 = 8 * CHUNK;
 /// The same for each of several, which wait for one another at the end of a batch.
 const SHARED_BATCH: u32 = 2 * BATCH;
+/// The same while somebody listens, whose accesses wait in memory too.
+const LISTENING_BATCH: u32 = 2 * CHUNK;
 
-/// Executes a validated pass. Accesses go to `accesses` where it is given.
+/// Executes a validated pass; a listener is told of its accesses.
 pub(super) fn execute(
     gpu: &mut Gpu,
     pass: &RenderPass,
-    accesses: Option<&mut Vec<BlockAccess>>,
+    listener: Option<Listener<'_>>,
 ) -> PassReport {
     let mut lent = split::lend(gpu, pass);
     let mut recycled = core::mem::take(&mut gpu.recycled);
-    let pool = gpu.pool.take();
-    let run = || {
-        let executor = Executor::new(gpu, pass, &lent, &mut recycled);
-        executor.run(&mut lent, accesses)
-    };
-    let counters = match &pool {
-        Some(pool) => pool.install(run),
-        None => run(),
-    };
+    let wants = listener.as_ref().map(|l| l.wants).unwrap_or_default();
+    let executor = Executor::new(gpu, pass, &lent, wants, &mut recycled);
+    let counters = executor.run(&mut lent, listener);
     gpu.recycled = recycled;
-    let clear = split::clear_traffic(pass, &lent);
-    split::give_back(gpu, pass, lent);
-    gpu.pool = pool;
+    let clear = lent.clear_traffic();
+    split::give_back(gpu, lent);
     let draws = pass.draws.iter().zip(counters);
     PassReport {
         label: pass.label.clone(),
-        draws: draws
-            .map(|(d, counters)| DrawReport {
-                label: d.label.clone(),
-                counters,
-                counted: match &d.pipeline.fragment {
-                    Some(f) => f.0.outputs().counts,
-                    None => &[],
-                },
-            })
-            .collect(),
+        draws: draws.map(|(d, c)| draw_report(d, c)).collect(),
         clear,
         time: std::time::Duration::ZERO,
+    }
+}
+
+fn draw_report(draw: &Draw, counters: Counters) -> DrawReport {
+    let fragment = draw.pipeline.fragment.as_ref();
+    DrawReport {
+        label: draw.label.clone(),
+        counters,
+        counted: fragment.map_or(&[], |f| f.0.outputs().counts),
     }
 }
 
@@ -84,8 +81,6 @@ struct Job {
 
 struct Executor<'a> {
     gpu: &'a Gpu,
-    pass: &'a RenderPass,
-    sizes: AccessSizes,
     grid: TileGrid,
     prepared: Vec<Prepared<'a>>,
     recycled: &'a mut Recycled,
@@ -93,119 +88,98 @@ struct Executor<'a> {
 }
 
 impl<'a> Executor<'a> {
-    fn new(gpu: &'a Gpu, pass: &'a RenderPass, lent: &Lent, recycled: &'a mut Recycled) -> Self {
+    fn new(
+        gpu: &'a Gpu,
+        pass: &'a RenderPass,
+        lent: &Lent,
+        wants: Wants,
+        recycled: &'a mut Recycled,
+    ) -> Self {
         let target = Target {
             width: lent.layout.width,
             height: lent.layout.height,
             sizes: lent.sizes,
         };
-        let prepared = pass
-            .draws
-            .iter()
-            .map(|d| prepare(gpu, &target, d))
-            .collect();
+        let draws = pass.draws.iter();
         Self {
             gpu,
-            pass,
-            sizes: lent.sizes,
             grid: TileGrid::new(
                 lent.layout.tile_side(gpu.config.tile),
                 lent.layout.width,
                 lent.layout.height,
             ),
-            prepared,
+            prepared: draws.map(|d| prepare(gpu, &target, d, wants)).collect(),
             recycled,
             parallel: gpu.config.threads != 1,
         }
     }
 
-    fn run(
-        mut self,
-        lent: &mut Lent,
-        mut accesses: Option<&mut Vec<BlockAccess>>,
-    ) -> Vec<Counters> {
+    /// Batch after batch: its vertices, its chunks, all tiles.
+    fn run(mut self, lent: &mut Lent, mut listener: Option<Listener<'_>>) -> Vec<Counters> {
         let units = self.units();
-        let mut counters: Vec<Counters> = self
-            .prepared
-            .iter()
-            .enumerate()
-            .map(|(i, p)| vertex_traffic(p.draw, &units, i))
-            .collect();
-        let threads = if self.parallel {
-            rayon::current_num_threads() as u32
-        } else {
-            1
-        };
-        let room = if threads == 1 {
-            BATCH
-        } else {
-            SHARED_BATCH.saturating_mul(threads)
-        };
-        let batches = batches(&units, room);
-        let fills = [
-            split::loads(self.pass, &self.sizes),
-            split::stores(self.pass),
-        ];
-        let mut tiles = lent.tiles(self.gpu.config.tile);
-        let mut shaded: Vec<ShadedVertices> =
-            units.iter().map(|_| ShadedVertices::default()).collect();
-        let desks = Desks::default();
-        let mut ready = 0;
-        let last = batches.len() - 1;
-        for (b, jobs) in batches.iter().enumerate() {
-            let end = jobs.last().map_or(ready, |j| j.unit + 1);
-            if ready < end {
-                self.shade(&units[ready..end], &mut shaded[ready..end]);
-                ready = end;
-            }
-            let chunks = self.chunks(&units, jobs, &shaded);
+        let mut counters = self.vertex_counters(&units);
+        let batches = self.batches(&units, listener.is_some());
+        let mut vertices = Vertices::new(units.len());
+        let mut stage = TileStage::new(&self, lent);
+        for (number, jobs) in batches.iter().enumerate() {
+            let is_last = number + 1 == batches.len();
+            self.shade_for(&units, jobs, &mut vertices);
+            let chunks = self.chunks(&units, jobs, &vertices.shaded);
             for (job, chunk) in jobs.iter().zip(&chunks) {
-                let c = &mut counters[units[job.unit].draw];
-                c.add(&Counters {
+                counters[units[job.unit].draw].add(&Counters {
                     primitives: chunk.counters,
                     ..Counters::default()
                 });
             }
-            let stage = TileStage {
-                gpu: self.gpu,
-                grid: self.grid,
-                work: draw_work(&units, jobs, &shaded, &chunks, &self.prepared),
-                draws: self.prepared.len(),
-                sizes: self.sizes,
-                before: (b == 0).then_some(&fills[0]),
-                after: (b == last).then_some(&fills[1]),
-                parallel: self.parallel,
-                listening: accesses.is_some(),
-                desks: &desks,
+            let runs = match &listener {
+                Some(_) => listen::runs(&chunks),
+                None => core::iter::once(0..chunks.len()).collect(),
             };
-            stage.run(&mut tiles);
-            self.recycled.chunks.extend(chunks);
-            // The next batch may go on with the last unit.
-            let done = if b == last {
-                end
-            } else {
-                end.saturating_sub(1)
-            };
-            for s in &mut shaded[jobs.first().map_or(end, |j| j.unit)..done] {
-                self.recycled.shaded.push(core::mem::take(s));
+            for run in runs {
+                let ends = is_last && run.end == chunks.len();
+                let (jobs, chunks) = (&jobs[run.clone()], &chunks[run]);
+                let work = draw_work(&units, jobs, &vertices.shaded, chunks, &self.prepared);
+                stage.run(&work, ends, listener.is_some());
+                if let Some(listener) = &mut listener {
+                    listener.hear(stage.desks.accesses(), self.parallel);
+                }
             }
+            self.recycled.chunks.extend(chunks);
+            vertices.recycle(jobs, is_last, &mut self.recycled.shaded);
         }
-        for desk in desks.into_all() {
+        for desk in stage.desks.into_all() {
             let drawn = counters.iter_mut().zip(&self.prepared);
             for ((c, p), s) in drawn.zip(desk.scratch.counters) {
                 c.add(&s.into_counters(&p.config));
             }
-            if let Some(all) = &mut accesses {
-                all.extend(desk.accesses);
-            }
-        }
-        if let Some(r) = accesses {
-            r.par_sort_unstable_by_key(|a| (a.draw, a.primitive, a.piece, a.block[1], a.block[0]));
         }
         for (c, p) in counters.iter_mut().zip(&self.prepared) {
             c.settle(&p.sizes);
         }
         counters
+    }
+
+    /// Vertex and index traffic of each draw.
+    fn vertex_counters(&self, units: &[Unit<'_>]) -> Vec<Counters> {
+        let draws = self.prepared.iter().enumerate();
+        draws
+            .map(|(i, p)| vertex_traffic(p.draw, units, i))
+            .collect()
+    }
+
+    fn batches(&self, units: &[Unit<'_>], listening: bool) -> Vec<Vec<Job>> {
+        if listening {
+            return batches(units, listen::CHUNK, LISTENING_BATCH);
+        }
+        let threads = match self.parallel {
+            true => rayon::current_num_threads() as u32,
+            false => 1,
+        };
+        let room = match threads {
+            1 => BATCH,
+            n => SHARED_BATCH.saturating_mul(n),
+        };
+        batches(units, CHUNK, room)
     }
 
     fn units(&self) -> Vec<Unit<'a>> {
@@ -227,6 +201,16 @@ impl<'a> Executor<'a> {
             }
         }
         units
+    }
+
+    /// Shades the vertices of the units up to the last of `jobs`.
+    fn shade_for(&mut self, units: &[Unit<'_>], jobs: &[Job], vertices: &mut Vertices) {
+        let end = jobs.last().map_or(0, |j| j.unit + 1);
+        let start = vertices.ready;
+        if start < end {
+            vertices.ready = end;
+            self.shade(&units[start..end], &mut vertices.shaded[start..end]);
+        }
     }
 
     /// Shades the vertices of `units`, in recycled memory.
@@ -296,6 +280,33 @@ impl<'a> Executor<'a> {
     }
 }
 
+/// Shaded vertices of all units, in memory from the unit's first batch to its last.
+struct Vertices {
+    shaded: Vec<ShadedVertices>,
+    /// Units that have been shaded.
+    ready: usize,
+}
+
+impl Vertices {
+    fn new(units: usize) -> Self {
+        Self {
+            shaded: core::iter::repeat_with(ShadedVertices::default)
+                .take(units)
+                .collect(),
+            ready: 0,
+        }
+    }
+
+    /// Gives up the units of `jobs`, but for the last one, with which the next batch
+    /// may go on.
+    fn recycle(&mut self, jobs: &[Job], is_last: bool, to: &mut Vec<ShadedVertices>) {
+        let first = jobs.first().map_or(self.ready, |j| j.unit);
+        let end = self.ready - usize::from(!is_last && self.ready > 0);
+        let done = self.shaded.get_mut(first..end).unwrap_or_default();
+        to.extend(done.iter_mut().map(core::mem::take));
+    }
+}
+
 /// What a worker needs beside the tile itself; what it counts and finds.
 struct Desk {
     scratch: Scratch,
@@ -323,56 +334,103 @@ impl Desks {
             .push(desk);
     }
 
+    /// What the workers have gathered.
+    fn accesses(&mut self) -> impl Iterator<Item = &mut Vec<BlockAccess>> {
+        let all = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
+        all.iter_mut().map(|d| &mut d.accesses)
+    }
+
     fn into_all(self) -> Vec<Desk> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// The tile stage of one batch.
+/// The tiles of a pass, and who works on them.
 struct TileStage<'a> {
     gpu: &'a Gpu,
     grid: TileGrid,
-    work: Vec<DrawWork<'a>>,
-    draws: usize,
     sizes: AccessSizes,
-    before: Option<&'a Fill>,
-    after: Option<&'a Fill>,
+    tiles: Vec<TileTarget<'a>>,
+    /// What the load operations store, until they have.
+    loads: Option<Fill>,
+    stores: Fill,
+    draws: usize,
     parallel: bool,
-    listening: bool,
-    desks: &'a Desks,
+    desks: Desks,
 }
 
-impl TileStage<'_> {
-    fn run(&self, tiles: &mut [TileTarget<'_>]) {
-        if self.parallel {
-            let tiles = tiles.par_iter_mut().with_max_len(1);
-            tiles.for_each(|tile| {
-                let mut desk = self.desks.take(self.draws);
-                self.tile(tile, &mut desk);
-                self.desks.put(desk);
-            });
-        } else {
-            let mut desk = self.desks.take(self.draws);
-            tiles.iter_mut().for_each(|tile| self.tile(tile, &mut desk));
-            self.desks.put(desk);
+impl<'a> TileStage<'a> {
+    fn new(executor: &Executor<'a>, lent: &'a mut Lent) -> Self {
+        Self {
+            gpu: executor.gpu,
+            grid: executor.grid,
+            sizes: lent.sizes,
+            loads: Some(lent.loads()),
+            stores: lent.stores(),
+            tiles: lent.tiles(executor.gpu.config.tile),
+            draws: executor.prepared.len(),
+            parallel: executor.parallel,
+            desks: Desks::default(),
         }
     }
 
+    /// Runs `work` on all tiles, after the load operations the first time, and before
+    /// the store operations where the pass `ends`.
+    fn run(&mut self, work: &[DrawWork<'_>], ends: bool, listening: bool) {
+        let loads = self.loads.take();
+        let visit = Visit {
+            level: self.gpu.config.simd,
+            grid: self.grid,
+            work,
+            sizes: &self.sizes,
+            before: loads.as_ref(),
+            after: ends.then_some(&self.stores),
+            listening,
+        };
+        let (desks, draws) = (&self.desks, self.draws);
+        if self.parallel {
+            let tiles = self.tiles.par_iter_mut().with_max_len(1);
+            tiles.for_each(|tile| {
+                let mut desk = desks.take(draws);
+                visit.tile(tile, &mut desk);
+                desks.put(desk);
+            });
+        } else {
+            let mut desk = desks.take(draws);
+            let tiles = self.tiles.iter_mut();
+            tiles.for_each(|tile| visit.tile(tile, &mut desk));
+            desks.put(desk);
+        }
+    }
+}
+
+/// What is done in every tile.
+struct Visit<'a> {
+    level: SimdLevel,
+    grid: TileGrid,
+    work: &'a [DrawWork<'a>],
+    sizes: &'a AccessSizes,
+    before: Option<&'a Fill>,
+    after: Option<&'a Fill>,
+    listening: bool,
+}
+
+impl Visit<'_> {
     fn tile(&self, tile: &mut TileTarget<'_>, desk: &mut Desk) {
         if let Some(fill) = self.before {
-            fill.apply(tile, &self.sizes);
+            fill.apply(tile, self.sizes);
         }
         let number = (tile.y >> self.grid.shift) * self.grid.across + (tile.x >> self.grid.shift);
         run_tile(
-            self.gpu.config.simd,
-            &self.work,
+            self.level,
+            self.work,
             number as usize,
             tile,
             &mut desk.scratch,
             self.listening.then_some(&mut desk.accesses),
         );
         if let Some(fill) = self.after {
-            fill.apply(tile, &self.sizes);
+            fill.apply(tile, self.sizes);
         }
     }
 }
@@ -404,13 +462,14 @@ fn draw_work<'a>(
     work
 }
 
-/// Chunks of all units, in batches; at least one batch, for the load operations.
-fn batches(units: &[Unit<'_>], size: u32) -> Vec<Vec<Job>> {
+/// Chunks of all units, in batches of `size` primitives; at least one batch, for the load
+/// operations.
+fn batches(units: &[Unit<'_>], chunk: u32, size: u32) -> Vec<Vec<Job>> {
     let mut batches = vec![Vec::new()];
     let mut room = size;
     for (u, unit) in units.iter().enumerate() {
-        for first in (0..unit.primitives).step_by(CHUNK as usize) {
-            let primitives = CHUNK.min(unit.primitives - first);
+        for first in (0..unit.primitives).step_by(chunk as usize) {
+            let primitives = chunk.min(unit.primitives - first);
             if room < primitives {
                 batches.push(Vec::new());
                 room = size;

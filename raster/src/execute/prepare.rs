@@ -5,6 +5,7 @@ use crate::counters::AccessSizes;
 use crate::format::{self, Format};
 use crate::geometry::{DepthEncoding, GeometryState, ViewportTransform};
 use crate::gpu::Gpu;
+use crate::observer::Wants;
 use crate::sampling::BoundTexture;
 use crate::shader::{ErasedFragmentShader, FragmentOutputs, Interpolation};
 use crate::state::{CompareFunction, DepthStencilState, Viewport};
@@ -27,12 +28,18 @@ pub(super) struct Prepared<'a> {
     pub(super) sizes: AccessSizes,
 }
 
-pub(super) fn prepare<'a>(gpu: &'a Gpu, target: &Target, draw: &'a Draw) -> Prepared<'a> {
+pub(super) fn prepare<'a>(
+    gpu: &'a Gpu,
+    target: &Target,
+    draw: &'a Draw,
+    wants: Wants,
+) -> Prepared<'a> {
     let viewport = draw
         .viewport
         .unwrap_or_else(|| Viewport::full(target.width, target.height));
     let geometry = geometry_state(target, draw, &viewport);
-    let config = draw_config(gpu, target, draw, &viewport, &geometry);
+    let mut config = draw_config(gpu, target, draw, &viewport, &geometry);
+    config.listen(wants);
     let mut sizes = target.sizes;
     for (size, t) in sizes.tex.iter_mut().zip(&config.textures) {
         *size = Some(t.texture.desc.format);
@@ -153,6 +160,7 @@ fn draw_config<'a>(
         lean: false,
         counting: None,
         plain: draw.pipeline.primitive.clip_planes.is_empty() && ds.depth.bounds.is_none(),
+        depth_ranges: false,
         needs_depth: depth_tested
             || (attached && ds.depth.write)
             || (shader.is_some() && constant.is_none()),

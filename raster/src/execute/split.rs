@@ -1,6 +1,6 @@
 //! Lending attachments to a pass, and cutting them into tiles.
 
-use crate::command::{LoadOp, RenderPass, StoreOp};
+use crate::command::{ColorAttachment, DepthStencilAttachment, LoadOp, RenderPass, StoreOp};
 use crate::counters::{AccessSizes, ClientTraffic, Traffic, packed_word_bytes};
 use crate::format::{Format, encode, encode_depth};
 use crate::gpu::Gpu;
@@ -9,64 +9,90 @@ use crate::texture::{
 };
 use crate::tile::{ColorTile, DepthTile, TileTarget};
 
-/// The attachments' storage while a pass runs.
+/// The attachments while a pass runs: their storage, and what happens to it at both ends.
 pub(super) struct Lent {
     pub(super) layout: Layout,
     pub(super) sizes: AccessSizes,
-    color: Vec<(ColorBlocks, Format)>,
-    depth: Option<DepthPlane>,
+    color: Vec<LentColor>,
+    depth: Option<LentDepth>,
+}
+
+struct LentColor {
+    attachment: ColorAttachment,
+    format: Format,
+    blocks: ColorBlocks,
+}
+
+struct LentDepth {
+    attachment: DepthStencilAttachment,
+    format: Format,
+    plane: DepthPlane,
 }
 
 /// Takes the attachments of `pass` out of the GPU's textures.
 pub(super) fn lend(gpu: &mut Gpu, pass: &RenderPass) -> Lent {
-    let mut sizes = AccessSizes::default();
-    let mut layout = Layout::new(1, 1);
-    let mut take = |id: TextureId, s: Subresource| {
-        let t = &mut gpu.textures[id.0 as usize];
-        layout = t.layouts[s.mip as usize];
-        let plane =
-            core::mem::replace(&mut t.planes[s.mip as usize][s.layer as usize], Plane::Lent);
-        (plane, t.desc.format)
+    let mut lent = Lent {
+        layout: Layout::new(1, 1),
+        sizes: AccessSizes::default(),
+        color: Vec::new(),
+        depth: None,
     };
-    let mut color = Vec::new();
-    for (i, a) in pass.color.iter().enumerate() {
-        if let (Plane::Color(c), format) = take(a.texture, a.subresource) {
-            color.push((c, format));
-            sizes.color[i] = Some(format);
+    for (i, attachment) in pass.color.iter().enumerate() {
+        let (format, plane) = lent.take(gpu, attachment.texture, attachment.subresource);
+        if let Plane::Color(blocks) = plane {
+            lent.sizes.color[i] = Some(format);
+            lent.color.push(LentColor {
+                attachment: attachment.clone(),
+                format,
+                blocks,
+            });
         }
     }
-    let depth = pass
-        .depth_stencil
-        .as_ref()
-        .and_then(|a| match take(a.texture, a.subresource) {
-            (Plane::Depth(d), format) => {
-                sizes.depth = Some(format);
-                Some(d)
-            }
-            _ => None,
-        });
-    Lent {
-        layout,
-        sizes,
-        color,
-        depth,
+    if let Some(attachment) = &pass.depth_stencil {
+        let (format, plane) = lent.take(gpu, attachment.texture, attachment.subresource);
+        if let Plane::Depth(plane) = plane {
+            lent.sizes.depth = Some(format);
+            lent.depth = Some(LentDepth {
+                attachment: attachment.clone(),
+                format,
+                plane,
+            });
+        }
     }
+    lent
 }
 
 /// Puts the attachments back.
-pub(super) fn give_back(gpu: &mut Gpu, pass: &RenderPass, lent: Lent) {
+pub(super) fn give_back(gpu: &mut Gpu, lent: Lent) {
     let mut put = |id: TextureId, s: Subresource, plane| {
         gpu.textures[id.0 as usize].planes[s.mip as usize][s.layer as usize] = plane;
     };
-    for (a, (blocks, _)) in pass.color.iter().zip(lent.color) {
+    for LentColor {
+        attachment: a,
+        blocks,
+        ..
+    } in lent.color
+    {
         put(a.texture, a.subresource, Plane::Color(blocks));
     }
-    if let (Some(a), Some(d)) = (&pass.depth_stencil, lent.depth) {
-        put(a.texture, a.subresource, Plane::Depth(d));
+    if let Some(LentDepth {
+        attachment: a,
+        plane,
+        ..
+    }) = lent.depth
+    {
+        put(a.texture, a.subresource, Plane::Depth(plane));
     }
 }
 
 impl Lent {
+    fn take(&mut self, gpu: &mut Gpu, id: TextureId, s: Subresource) -> (Format, Plane) {
+        let texture = &mut gpu.textures[id.0 as usize];
+        self.layout = texture.layouts[s.mip as usize];
+        let plane = &mut texture.planes[s.mip as usize][s.layer as usize];
+        (texture.desc.format, core::mem::replace(plane, Plane::Lent))
+    }
+
     /// Cuts the attachments into execution tiles of `side` pixels that touch the image.
     pub(super) fn tiles(&mut self, side: u32) -> Vec<TileTarget<'_>> {
         let n = self.layout.tile_blocks(side);
@@ -76,9 +102,12 @@ impl Lent {
         let mut color: Vec<_> = self
             .color
             .iter_mut()
-            .map(|(b, _)| cut_color(b, n).into_iter())
+            .map(|c| cut_color(&mut c.blocks, n).into_iter())
             .collect();
-        let mut depth = self.depth.as_mut().map(|d| cut_depth(d, n).into_iter());
+        let mut depth = self
+            .depth
+            .as_mut()
+            .map(|d| cut_depth(&mut d.plane, n).into_iter());
         let mut tiles = Vec::with_capacity(count);
         for t in 0..count {
             let (x, y) = self.layout.tile_origin(t * n);
@@ -132,80 +161,69 @@ pub(super) struct Fill {
     stencil: Option<u8>,
 }
 
-/// What the load operations store.
-pub(super) fn loads(pass: &RenderPass, sizes: &AccessSizes) -> Fill {
-    let color = pass
-        .color
-        .iter()
-        .zip(sizes.color.iter().flatten())
-        .map(|(a, &f)| match a.load {
+impl Lent {
+    /// What the load operations store.
+    pub(super) fn loads(&self) -> Fill {
+        let color = |c: &LentColor| match c.attachment.load {
             LoadOp::Load => None,
-            LoadOp::Clear(v) => Some(encode(f, v)),
+            LoadOp::Clear(v) => Some(encode(c.format, v)),
             LoadOp::DontCare => Some([0; 4]),
-        });
-    let ds = pass.depth_stencil.as_ref();
-    Fill {
-        color: color.collect(),
-        depth: ds.and_then(|a| match a.depth_load {
+        };
+        let depth = |d: &LentDepth| match d.attachment.depth_load {
             LoadOp::Load => None,
-            LoadOp::Clear(v) => Some(encode_depth(
-                sizes.depth.unwrap_or(Format::Depth24Stencil8),
-                v,
-            )),
+            LoadOp::Clear(v) => Some(encode_depth(d.format, v)),
             LoadOp::DontCare => Some(0),
-        }),
-        stencil: ds.and_then(|a| match a.stencil_load {
+        };
+        let stencil = |d: &LentDepth| match d.attachment.stencil_load {
             LoadOp::Load => None,
             LoadOp::Clear(v) => Some(v),
             LoadOp::DontCare => Some(0),
-        }),
+        };
+        Fill {
+            color: self.color.iter().map(color).collect(),
+            depth: self.depth.as_ref().and_then(depth),
+            stencil: self.depth.as_ref().and_then(stencil),
+        }
     }
-}
 
-/// What the store operations destroy.
-pub(super) fn stores(pass: &RenderPass) -> Fill {
-    let gone = |s: StoreOp| s == StoreOp::Discard;
-    let ds = pass.depth_stencil.as_ref();
-    Fill {
-        color: pass
-            .color
-            .iter()
-            .map(|a| gone(a.store).then_some([0; 4]))
-            .collect(),
-        depth: ds.and_then(|a| gone(a.depth_store).then_some(0)),
-        stencil: ds.and_then(|a| gone(a.stencil_store).then_some(0)),
+    /// What the store operations destroy.
+    pub(super) fn stores(&self) -> Fill {
+        let gone = |s: StoreOp| s == StoreOp::Discard;
+        let color = |c: &LentColor| gone(c.attachment.store).then_some([0; 4]);
+        let depth = self.depth.as_ref().map(|d| &d.attachment);
+        Fill {
+            color: self.color.iter().map(color).collect(),
+            depth: depth.and_then(|a| gone(a.depth_store).then_some(0)),
+            stencil: depth.and_then(|a| gone(a.stencil_store).then_some(0)),
+        }
     }
-}
 
-/// Traffic of the clears of a pass: one write a pixel and aspect.
-pub(super) fn clear_traffic(pass: &RenderPass, lent: &Lent) -> ClientTraffic {
-    let pixels = u64::from(lent.layout.width) * u64::from(lent.layout.height);
-    let writes = |cleared: bool, bytes: u64| Traffic {
-        write_accesses: if cleared { pixels } else { 0 },
-        write_bytes: if cleared { pixels * bytes } else { 0 },
-        ..Traffic::default()
-    };
-    let mut t = ClientTraffic::default();
-    for ((slot, a), f) in t
-        .color
-        .iter_mut()
-        .zip(&pass.color)
-        .zip(lent.sizes.color.iter().flatten())
-    {
-        *slot = writes(matches!(a.load, LoadOp::Clear(_)), f.bytes());
-    }
-    if let (Some(a), Some(f)) = (&pass.depth_stencil, lent.sizes.depth) {
-        t.z = writes(matches!(a.depth_load, LoadOp::Clear(_)), f.bytes());
-        t.stencil = writes(matches!(a.stencil_load, LoadOp::Clear(_)), 1);
-        let words = t.z.write_accesses + t.stencil.write_accesses;
-        let word = packed_word_bytes(f);
-        t.packed_depth_stencil = Traffic {
-            write_accesses: words,
-            write_bytes: words * word,
+    /// Traffic of the clears: one write a pixel and aspect.
+    pub(super) fn clear_traffic(&self) -> ClientTraffic {
+        let pixels = u64::from(self.layout.width) * u64::from(self.layout.height);
+        let writes = |cleared: bool, bytes: u64| Traffic {
+            write_accesses: if cleared { pixels } else { 0 },
+            write_bytes: if cleared { pixels * bytes } else { 0 },
             ..Traffic::default()
         };
+        let mut t = ClientTraffic::default();
+        for (slot, c) in t.color.iter_mut().zip(&self.color) {
+            let cleared = matches!(c.attachment.load, LoadOp::Clear(_));
+            *slot = writes(cleared, c.format.bytes());
+        }
+        if let Some(d) = &self.depth {
+            let a = &d.attachment;
+            t.z = writes(matches!(a.depth_load, LoadOp::Clear(_)), d.format.bytes());
+            t.stencil = writes(matches!(a.stencil_load, LoadOp::Clear(_)), 1);
+            let words = t.z.write_accesses + t.stencil.write_accesses;
+            t.packed_depth_stencil = Traffic {
+                write_accesses: words,
+                write_bytes: words * packed_word_bytes(d.format),
+                ..Traffic::default()
+            };
+        }
+        t
     }
-    t
 }
 
 impl Fill {

@@ -132,6 +132,12 @@ impl Triangle {
         u32::from(self.flags) & STEEP != 0
     }
 
+    /// Blocks that it covers at most.
+    pub(crate) fn most_blocks(&self) -> u64 {
+        let [x0, y0, x1, y1] = self.bounds.map(|b| i64::from(b >> 3));
+        ((x1 - x0 + 1).max(0) * (y1 - y0 + 1).max(0)) as u64
+    }
+
     /// Whether fixed function must look closer: at the far end, or in doubles.
     #[inline(always)]
     pub(crate) fn is_special(&self) -> bool {

@@ -3,6 +3,7 @@
 
 use super::Interpolation;
 use super::fragment::{Fragment, FragmentOutputs, FragmentShader, PACKETS, ShadeBlock};
+use super::identity::{Named, ShaderIdentity, Uniforms};
 use super::vertex::{Vertex, VertexBatch, VertexOutput, VertexShader};
 use crate::MAX_VARYINGS;
 use crate::simd::{F32, LANES, Lanes, SimdLevel, with_lanes};
@@ -15,13 +16,22 @@ pub(crate) trait ErasedVertexShader: Send + Sync {
         batch: &VertexBatch<'_>,
         out: &mut VertexOutput<'_, '_>,
     );
+    fn identity(&self) -> Option<ShaderIdentity> {
+        None
+    }
 }
 
 pub(crate) trait ErasedFragmentShader: Send + Sync {
     fn outputs(&self) -> FragmentOutputs;
     fn constant(&self) -> Option<[f32; 4]>;
     fn shade_block(&self, level: SimdLevel, block: &mut ShadeBlock<'_>);
+    fn identity(&self) -> Option<ShaderIdentity> {
+        None
+    }
 }
+
+/// A shader whose stage says what it is; all else goes to the shader.
+pub(super) struct NamedShader<S>(pub(super) S);
 
 impl<V: VertexShader> ErasedVertexShader for V {
     fn varyings(&self) -> &[Interpolation] {
@@ -49,6 +59,43 @@ impl<F: FragmentShader> ErasedFragmentShader for F {
 
     fn shade_block(&self, level: SimdLevel, block: &mut ShadeBlock<'_>) {
         with_lanes!(level, l => shade_block(self, l, block));
+    }
+}
+
+impl<V: VertexShader + Uniforms + Named> ErasedVertexShader for NamedShader<V> {
+    fn varyings(&self) -> &[Interpolation] {
+        VertexShader::varyings(&self.0)
+    }
+
+    fn shade_batch(
+        &self,
+        level: SimdLevel,
+        batch: &VertexBatch<'_>,
+        out: &mut VertexOutput<'_, '_>,
+    ) {
+        self.0.shade_batch(level, batch, out);
+    }
+
+    fn identity(&self) -> Option<ShaderIdentity> {
+        Some(ShaderIdentity::of(&self.0))
+    }
+}
+
+impl<F: FragmentShader + Uniforms + Named> ErasedFragmentShader for NamedShader<F> {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentShader::outputs(&self.0)
+    }
+
+    fn constant(&self) -> Option<[f32; 4]> {
+        FragmentShader::constant(&self.0)
+    }
+
+    fn shade_block(&self, level: SimdLevel, block: &mut ShadeBlock<'_>) {
+        self.0.shade_block(level, block);
+    }
+
+    fn identity(&self) -> Option<ShaderIdentity> {
+        Some(ShaderIdentity::of(&self.0))
     }
 }
 

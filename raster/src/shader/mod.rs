@@ -6,19 +6,26 @@
 //! [`per_vertex`] and [`per_fragment`] take an ordinary closure that sees a
 //! single vertex or fragment; slower, and the way to a first shader. Both tiers
 //! give the same bits for the same arithmetic.
+//!
+//! A shader of the first tier may be [`Named`]: its stage then says which shader it is
+//! and with what uniforms ([`ShaderIdentity`]), and a [`ShaderTable`] makes it again.
 
 mod erased;
 mod fragment;
+mod identity;
 mod scalar;
+mod table;
 mod vertex;
 
 pub(crate) use erased::{ErasedFragmentShader, ErasedVertexShader};
 pub use fragment::{Fragment, FragmentOutputs, FragmentShader};
 pub(crate) use fragment::{PACKETS, PacketOutput, ShadeBlock, ShaderEvents, VaryingPlanes};
+pub use identity::{Named, ShaderIdentity, UniformError, UniformReader, UniformWriter, Uniforms};
 pub use scalar::{
     ScalarFragment, ScalarFragmentOutput, ScalarVertex, ScalarVertexOutput, per_fragment,
     per_vertex,
 };
+pub use table::{ShaderTable, ShaderTableError};
 pub use vertex::{Vertex, VertexShader};
 pub(crate) use vertex::{VertexBatch, VertexOutput};
 

@@ -59,6 +59,14 @@ impl TextureDescriptor {
             mip_levels: 1,
         }
     }
+
+    /// All images of such a texture, level by level.
+    pub fn images(&self) -> impl Iterator<Item = Subresource> {
+        (0..self.mip_levels).flat_map(|mip| {
+            let (_, layers) = level(self, mip);
+            (0..layers).map(move |layer| Subresource { mip, layer })
+        })
+    }
 }
 
 /// One two-dimensional image of a texture.

@@ -403,7 +403,15 @@ fn fragments<L: Lanes, const D24: bool>(
         ..BlockAccess::default()
     };
     count(&mut env.counters.fragments.generated, mask);
+    if config.depth_ranges {
+        (access.span, access.stored) = outlined(
+            l,
+            #[inline(always)]
+            || depth_ranges(l, env, place, plane),
+        );
+    }
     let Some(decision) = consult(l, env, face, place, plane, decision, mask) else {
+        access.ended.hiz = true;
         return access;
     };
     let late = config.is_late(face);
@@ -411,6 +419,7 @@ fn fragments<L: Lanes, const D24: bool>(
     let mut depths = Depths::Plane(*plane);
     if late {
         alive = shaded::<L, D24>(l, env, t, place, plane, alive);
+        access.ended.discarded = mask & !alive;
         if config.writes_shader_depth {
             depths = Depths::Shader(shade::shader_depths::<D24>(env, alive));
         }
@@ -423,13 +432,34 @@ fn fragments<L: Lanes, const D24: bool>(
         );
     }
     if !late && config.shader.is_some() {
+        let tested = alive;
         alive = shaded::<L, D24>(l, env, t, place, plane, alive);
+        access.ended.discarded = tested & !alive;
     }
     if alive != 0 && config.shader.is_some() {
         output::write(l, env, place, alive);
         color_access(config, alive, &mut access);
     }
     access
+}
+
+/// Depths of the plane in the block, and of what is stored there.
+#[inline(always)]
+fn depth_ranges<L: Lanes, const D24: bool>(
+    l: L,
+    env: &Env<'_, '_>,
+    place: Place,
+    plane: &DepthBlock<D24>,
+) -> ([u32; 2], [u32; 2]) {
+    let d = env.target.depth.as_ref().expect("ranges only with depth");
+    let mut stored = [d.hiz_min[place.index], d.hiz_max[place.index]];
+    // What is stale stays so: listening changes nothing.
+    if stored[0] > stored[1] {
+        let inside = env.target.inside(place.x, place.y);
+        stored = depth::block_range(l, &d.depth[place.index], inside);
+    }
+    let unsigned = |[low, high]: [i32; 2]| [low as u32, high as u32];
+    (unsigned(plane.span()), unsigned(stored))
 }
 
 fn color_access(config: &DrawConfig<'_>, live: u64, access: &mut BlockAccess) {
@@ -511,6 +541,7 @@ fn tests<L: Lanes, const D24: bool>(
         count(&mut c.accesses.z_read, alive);
         access.z_read = alive;
         count(&mut c.fragments.bounds_failed, alive & !ok);
+        access.ended.bounds = alive & !ok;
         alive = ok;
     }
     let stencil_block = &mut d.stencil[place.index];
@@ -520,6 +551,7 @@ fn tests<L: Lanes, const D24: bool>(
         alive
     };
     count(&mut c.fragments.stencil_failed, alive & !stencil_pass);
+    access.ended.stencil = alive & !stencil_pass;
 
     let depth_pass = match (config.compare, decision) {
         (CompareFunction::Always, _) | (_, Decision::Pass) => stencil_pass,
@@ -533,6 +565,7 @@ fn tests<L: Lanes, const D24: bool>(
         }
     };
     count(&mut c.fragments.depth_failed, stencil_pass & !depth_pass);
+    access.ended.depth = stencil_pass & !depth_pass;
     if face.enabled {
         let outcomes = [
             alive & !stencil_pass,
@@ -732,6 +765,7 @@ fn record(env: &mut Env<'_, '_>, t: &Triangle, place: Place, access: BlockAccess
             primitive: t.primitive,
             piece: u32::from(t.piece),
             block: [(place.x / 8) as u16, (place.y / 8) as u16],
+            front: t.is_front(),
             ..access
         });
     }

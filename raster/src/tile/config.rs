@@ -2,6 +2,7 @@
 
 use crate::format::{Format, unorm8_from_f32};
 use crate::geometry::{DepthEncoding, Triangle};
+use crate::observer::Wants;
 use crate::sampling::BoundTexture;
 use crate::shader::ErasedFragmentShader;
 use crate::state::{BlendState, ColorWrites, CompareFunction, StencilFaceState, StencilOperation};
@@ -136,6 +137,8 @@ pub(crate) struct DrawConfig<'a> {
     /// Whether both faces count in the stencil on depth failure and on pass, where
     /// they do so alike.
     pub(crate) counting: Option<[bool; 2]>,
+    /// Somebody listens who wants the depth ranges of blocks.
+    pub(crate) depth_ranges: bool,
     /// Fragment depth is looked at by anything.
     pub(crate) needs_depth: bool,
     /// Front, back.
@@ -156,6 +159,12 @@ pub(crate) struct DrawConfig<'a> {
 }
 
 impl DrawConfig<'_> {
+    /// Prepares for what an observer wants.
+    pub(crate) fn listen(&mut self, wants: Wants) {
+        self.depth_ranges = wants.depth_ranges && self.attached;
+        self.needs_depth |= self.depth_ranges;
+    }
+
     /// Whether [`Self::lean`] should be set.
     pub(crate) fn is_lean(&self) -> bool {
         let face = |f| !self.is_late(f) && f.is_lean();

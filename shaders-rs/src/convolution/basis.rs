@@ -2,7 +2,7 @@
 
 use gnomon_raster::math::sin_cos;
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
-use gnomon_raster::{F32, I32, Lanes, Mask};
+use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
 use super::{Encoding, Expansion};
 use crate::soft_volumes::{reads, texel_of};
@@ -17,6 +17,7 @@ pub struct Source {
     /// that sums up to an entry leave the entry's own texel out.
     pub exclusive: bool,
 }
+uniforms!(Source { origin, exclusive });
 
 impl Source {
     /// Depth 0..=1, NaN as 1, and which lanes hold a texel and not the zeros before
@@ -53,6 +54,13 @@ pub struct BasisImages {
     /// How attachments 0 and 1 are stored.
     pub encodings: [Encoding; 2],
 }
+uniforms!(BasisImages {
+    expansion,
+    pair,
+    channel,
+    source,
+    encodings
+});
 
 impl FragmentShader for BasisImages {
     fn outputs(&self) -> FragmentOutputs {
@@ -98,6 +106,12 @@ pub struct DepthImage {
     /// How it is stored.
     pub encoding: Encoding,
 }
+uniforms!(DepthImage {
+    reach,
+    integer,
+    source,
+    encoding
+});
 
 impl FragmentShader for DepthImage {
     fn outputs(&self) -> FragmentOutputs {

@@ -4,7 +4,7 @@
 use gnomon_raster::math::{exp2, log2};
 use gnomon_raster::shader::Fragment;
 use gnomon_raster::simd::each4;
-use gnomon_raster::{F32, I32, Lanes, U32};
+use gnomon_raster::{F32, I32, Lanes, U32, uniforms};
 
 use super::{Atlas, Encoding};
 use crate::coverage::outlined;
@@ -19,6 +19,11 @@ pub struct Images {
     /// How values are stored.
     pub encoding: Encoding,
 }
+uniforms!(Images {
+    slot,
+    atlas,
+    encoding
+});
 
 /// A rectangle in image coordinates (u, v), 0..1 over the light view.
 #[derive(Clone, Copy)]
@@ -82,6 +87,12 @@ pub struct Mipmaps {
     /// The longer side: 0 is u, 1 is v.
     pub along: usize,
 }
+uniforms!(Mipmaps {
+    side,
+    lod_bias,
+    probes,
+    along
+});
 
 /// Where [`Mipmaps`] look.
 #[derive(Clone, Copy)]
@@ -196,6 +207,7 @@ pub enum BoxEdges {
     /// At the nearest border of texels.
     Texel,
 }
+uniforms!(enum BoxEdges { 0: Exact, 1: Texel });
 
 /// A box in texels of a tile: edges in 0..=side − 1, at least one texel apart.
 #[derive(Clone, Copy)]
@@ -248,6 +260,11 @@ pub struct FloatTables {
     /// the mean.
     pub centred: bool,
 }
+uniforms!(FloatTables {
+    side,
+    edges,
+    centred
+});
 
 impl FloatTables {
     /// What was taken off the texels of a tile.
@@ -361,6 +378,7 @@ pub struct IntegerTables {
     /// Where edges are.
     pub edges: BoxEdges,
 }
+uniforms!(IntegerTables { side, edges });
 
 /// Entries along one axis, and the weights of the texels between them.
 #[derive(Clone, Copy)]

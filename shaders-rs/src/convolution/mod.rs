@@ -22,7 +22,7 @@ pub mod look_up;
 pub mod prefilter;
 pub mod visibility;
 
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::{F32, Lanes, uniforms};
 
 /// Most terms of the expansion.
 pub const MAX_TERMS: usize = 16;
@@ -45,6 +45,14 @@ pub struct Expansion {
     /// Largest series depth, 1 − 1/(2M).
     pub reach: f32,
 }
+uniforms!(Expansion {
+    terms,
+    frequencies,
+    bias,
+    gain,
+    offset,
+    reach
+});
 
 impl Expansion {
     /// Tiles of four channels that hold the terms' sines and cosines.
@@ -63,6 +71,7 @@ pub struct Encoding {
     /// Added to the product.
     pub shift: f32,
 }
+uniforms!(Encoding { scale, shift });
 
 impl Encoding {
     /// As it is.
@@ -97,6 +106,11 @@ pub struct Atlas {
     /// Rows.
     pub rows: u32,
 }
+uniforms!(Atlas {
+    side,
+    columns,
+    rows
+});
 
 impl Atlas {
     /// Column and row of texels at which `tile` begins.

@@ -5,7 +5,7 @@
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::simd::each4;
-use gnomon_raster::{F32, I32, Lanes, Mask, U32};
+use gnomon_raster::{F32, I32, Lanes, Mask, U32, uniforms};
 
 use super::look_up::bits_of;
 use crate::soft_volumes::reads;
@@ -38,6 +38,7 @@ pub struct Halve {
     /// The level that is read.
     pub mip: u32,
 }
+uniforms!(Halve { textures, mip });
 
 impl FragmentShader for Halve {
     fn outputs(&self) -> FragmentOutputs {
@@ -72,6 +73,7 @@ pub struct CopyLevel {
     /// The level that is read.
     pub mip: u32,
 }
+uniforms!(CopyLevel { textures, mip });
 
 impl FragmentShader for CopyLevel {
     fn outputs(&self) -> FragmentOutputs {
@@ -101,6 +103,7 @@ pub struct LessMean {
     /// Texels along a side of a tile, a power of two.
     pub side: u32,
 }
+uniforms!(LessMean { textures, side });
 
 /// What the last level of an exclusive table's chain is multiplied by: its zeros are
 /// no texels.
@@ -157,6 +160,14 @@ pub struct SumStep {
     /// Sums of unsigned integers, modulo 2³².
     pub integer: bool,
 }
+uniforms!(SumStep {
+    textures,
+    axis,
+    step,
+    twice,
+    side,
+    integer
+});
 
 impl SumStep {
     /// Where the entry `steps` back is, and where there is one; outside the texture

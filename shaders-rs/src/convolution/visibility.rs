@@ -3,7 +3,7 @@
 
 use gnomon_raster::math::{exp, pow, sin_cos};
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::{F32, Lanes, uniforms};
 
 use super::look_up::{Images, Prefiltered, Rectangle};
 use super::{Expansion, MAX_TERMS};
@@ -19,6 +19,7 @@ pub struct Sharpening {
     /// B.
     pub falloff: f32,
 }
+uniforms!(Sharpening { strength, falloff });
 
 /// Name of the count of fragments whose 1 − s is below the threshold, and which are
 /// lit for that.
@@ -55,6 +56,18 @@ pub struct ConvolutionShadow<P> {
     /// Sharpening.
     pub sharpening: Sharpening,
 }
+uniforms!(ConvolutionShadow<P> {
+    mapping,
+    light_half,
+    expansion,
+    prefiltered,
+    csm,
+    csm_z,
+    depth,
+    threshold,
+    iterations,
+    sharpening,
+});
 
 /// The receiver's halves of the terms: 2/c_k · sin(c_k d) and 2/c_k · cos(c_k d).
 type Terms<L> = [[F32<L>; 2]; MAX_TERMS];

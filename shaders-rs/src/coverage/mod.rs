@@ -20,7 +20,7 @@ mod square;
 use fearless_simd::Simd as _;
 use gnomon_raster::math::dot3;
 use gnomon_raster::simd::each3;
-use gnomon_raster::{F32, Lanes, Mask};
+use gnomon_raster::{F32, Lanes, Mask, uniforms};
 
 /// Ends of a silhouette edge, in the coordinates of a projector.
 pub type Edge = [[f32; 3]; 2];
@@ -33,6 +33,7 @@ pub enum Image {
     /// The unit disc.
     Disc,
 }
+uniforms!(enum Image { 0: Square, 1: Disc });
 
 impl Image {
     /// Its area.
@@ -75,6 +76,7 @@ pub enum Projector {
     /// A sphere.
     Sphere(SphereLight),
 }
+uniforms!(enum Projector { 0: Flat(light), 1: Sphere(light) });
 
 impl Projector {
     /// What the light looks like.
@@ -123,6 +125,11 @@ pub struct FlatLight {
     /// Square for parallelograms.
     pub image: Image,
 }
+uniforms!(FlatLight {
+    centre,
+    axes,
+    image
+});
 
 impl FlatLight {
     #[inline(always)]
@@ -167,6 +174,11 @@ pub struct SphereLight {
     /// at distance D; else of radius r, as in paper IV (§4.2.1).
     pub seen: bool,
 }
+uniforms!(SphereLight {
+    centre,
+    radius,
+    seen
+});
 
 impl SphereLight {
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Passes over whole buffers that paper II needs, and boundaries without wedges.
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
-use gnomon_raster::{F32, I32, Lanes, U32};
+use gnomon_raster::{F32, I32, Lanes, U32, uniforms};
 
 use super::FULL;
 
@@ -17,6 +17,7 @@ pub struct TileDepths {
     /// Width and height of the image in pixels.
     pub size: [u32; 2],
 }
+uniforms!(TileDepths { shift, size });
 
 impl FragmentShader for TileDepths {
     fn outputs(&self) -> FragmentOutputs {
@@ -57,6 +58,7 @@ pub struct Boundary {
     /// -255 where it lies before the surface, 255 where beyond.
     pub front: f32,
 }
+uniforms!(Boundary { front });
 
 impl FragmentShader for Boundary {
     #[inline(always)]
@@ -78,6 +80,7 @@ pub struct StencilCounts {
     /// Number of depth-stencil textures, in slots from 0.
     pub textures: usize,
 }
+uniforms!(StencilCounts { textures });
 
 impl FragmentShader for StencilCounts {
     fn outputs(&self) -> FragmentOutputs {

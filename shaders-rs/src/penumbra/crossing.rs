@@ -12,7 +12,7 @@
 //! find the same q, bit for bit.
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
-use gnomon_raster::{F32, Lanes, Mask};
+use gnomon_raster::{F32, Lanes, Mask, uniforms};
 
 use super::intensity::{Distances, IntensityRates, Interpolation, quotient};
 use super::plane::{ScreenPlane, ScreenPoint};
@@ -28,6 +28,10 @@ pub struct SideIntensity {
     /// Along the side direction: the back line's rate over the front line's.
     pub back_over_front: f32,
 }
+uniforms!(SideIntensity {
+    between,
+    back_over_front
+});
 
 /// Adds `round(255 s)` at the exit, or at a surface before it, less
 /// `round(255 s)` at the entry, to attachment 0. Texture 0 is depth. Discards
@@ -44,6 +48,12 @@ pub struct WedgeCrossing {
     /// 255 times the intensity at the eye, rounded; for rays that start inside.
     pub at_eye: f32,
 }
+uniforms!(WedgeCrossing {
+    planes,
+    rates,
+    sides,
+    at_eye
+});
 
 /// Where a ray enters or leaves, and the rounded intensity there.
 #[derive(Clone, Copy)]

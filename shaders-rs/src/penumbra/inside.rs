@@ -7,7 +7,7 @@
 //! Where depth is 1 nothing is added.
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
-use gnomon_raster::{F32, I32, Lanes, Mask};
+use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
 use super::intensity::{Distances, IntensityRates};
 use super::plane::{ScreenBox, ScreenPlane, ScreenPoint};
@@ -24,6 +24,7 @@ pub enum Culling {
     /// The least as well.
     ZminZmax,
 }
+uniforms!(enum Culling { 0: None, 1: Zmax, 2: ZminZmax });
 
 /// The test of modelled tiles against a wedge (paper II, §4). Tiles are squares of
 /// `2^shift` pixels anchored at pixel (0, 0).
@@ -46,6 +47,14 @@ pub struct TileTest {
     /// Planes of further separating axes, positive inside.
     pub axes: Vec<(ScreenPlane, f32)>,
 }
+uniforms!(TileTest {
+    culling,
+    shift,
+    size,
+    outside,
+    range,
+    axes
+});
 
 /// How a tile is found to be outside a wedge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,6 +65,7 @@ pub enum OutsideTest {
     /// By `range` and `axes` alone.
     WithoutPlanes,
 }
+uniforms!(enum OutsideTest { 0: Planes, 1: WithoutPlanes });
 
 /// What a draw adds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +77,7 @@ pub enum Part {
     /// Both, for front planes that a single pass draws once.
     Both,
 }
+uniforms!(enum Part { 0: Umbra, 1: Penumbra, 2: Both });
 
 /// Adds a wedge's part to attachment 0 and discards where there is nothing to
 /// add. Without colour attachment what is left counts in the stencil. Texture 0
@@ -85,6 +96,13 @@ pub struct WedgeInside {
     /// Tiles to leave out.
     pub tiles: TileTest,
 }
+uniforms!(WedgeInside {
+    planes,
+    rates,
+    part,
+    depth_fail,
+    tiles
+});
 
 /// Which of a packet's tiles are out of reach, or wholly inside.
 #[derive(Clone, Copy)]

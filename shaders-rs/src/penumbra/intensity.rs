@@ -1,6 +1,6 @@
 //! The interpolated intensity inside a wedge (paper I, §4.2, equations (2), (3)).
 
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::{F32, Lanes, uniforms};
 
 /// How intensity varies between front and back plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,6 +11,7 @@ pub enum Interpolation {
     /// `3 s^2 - 2 s^3` of the linear value.
     Smoothstep,
 }
+uniforms!(enum Interpolation { 0: Linear, 1: Smoothstep });
 
 /// What equation (3) needs besides the distances from the planes. Rates are the
 /// absolute cosines between a plane's normal and a direction, which turn
@@ -25,6 +26,11 @@ pub struct IntensityRates {
     /// Linear or smooth.
     pub interpolation: Interpolation,
 }
+uniforms!(IntensityRates {
+    back_over_front,
+    first_over_second,
+    interpolation
+});
 
 /// Distances from the planes of a wedge, not negative, in any common unit.
 #[derive(Clone, Copy)]

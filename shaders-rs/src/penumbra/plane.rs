@@ -13,11 +13,12 @@
 //! coefficients, so two wedges that share a side plane with opposite signs divide
 //! the points between them.
 
-use gnomon_raster::{F32, Lanes};
+use gnomon_raster::{F32, Lanes, uniforms};
 
 /// `(a x + b y) + (c + d q)`, positive inside; the scale is world distance over w.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScreenPlane(pub [f32; 4]);
+uniforms!(ScreenPlane(coefficients));
 
 /// A pixel centre and what it shows there.
 #[derive(Clone, Copy)]

@@ -78,10 +78,14 @@ impl Block<'_> {
             return None;
         }
         self.counters.fragments.generated += fragments.len() as u64;
+        if let Some([span, stored]) = self.depth_ranges() {
+            (self.access.span, self.access.stored) = (span, stored);
+        }
         let verdict = self.zmin_zmax();
         if verdict == Verdict::Fails && !self.fails_with_effect() {
             self.counters.tiles.culled += 1;
             self.counters.fragments.hiz_killed += fragments.len() as u64;
+            self.access.ended.hiz = true;
             return Some(self.access);
         }
         self.counters.tiles.accepted += u64::from(verdict != Verdict::Unknown);
@@ -187,31 +191,27 @@ impl Block<'_> {
             .as_ref()
             .is_some_and(|p| p.depth.is_some());
         let used = self.ctx.skip && looks(state.compare) && state.bounds.is_none() && !writes_depth;
-        let Some(depth) = self
-            .images
-            .depth
-            .as_ref()
-            .filter(|_| used && self.ctx.pass.depth.is_some())
-        else {
+        let Some([span, stored]) = self.depth_ranges().filter(|_| used) else {
             return Verdict::Unknown;
         };
-        let new: Vec<_> = self
-            .pixels()
+        self.counters.tiles.tested += 1;
+        self.access.hiz_read = true;
+        verdict(state.compare, span, stored)
+    }
+
+    /// Ends of the triangle's depths over the whole block, and of what is stored in the
+    /// part of it inside the image; none without depth attachment.
+    fn depth_ranges(&self) -> Option<[[u32; 2]; 2]> {
+        let image = self.images.depth.as_ref();
+        let depth = image.filter(|_| self.ctx.pass.depth.is_some())?;
+        let pixels = self.pixels();
+        let new: Vec<_> = pixels
             .iter()
             .map(|&(x, y)| self.tri.depth.at(x, y).0)
             .collect();
-        let inside: Vec<_> = self
-            .pixels()
-            .into_iter()
-            .filter(|&p| self.in_image(p))
-            .collect();
-        let old: Vec<_> = inside
-            .iter()
-            .map(|&(x, y)| depth.depth[self.place(x, y)])
-            .collect();
-        self.counters.tiles.tested += 1;
-        self.access.hiz_read = true;
-        verdict(state.compare, ends(&new), ends(&old))
+        let inside = pixels.into_iter().filter(|&p| self.in_image(p));
+        let old: Vec<_> = inside.map(|(x, y)| depth.depth[self.place(x, y)]).collect();
+        Some([ends(&new), ends(&old)])
     }
 
     /// Steps 2 and 6.
@@ -230,6 +230,7 @@ impl Block<'_> {
             }
             if out.discard {
                 self.counters.fragments.discarded += 1;
+                self.access.ended.discarded |= f.bit;
                 self.counters.shader_counts[1] += 1;
                 continue;
             }
@@ -285,6 +286,11 @@ impl Block<'_> {
         for f in &fragments {
             self.access.z_read |= f.bit;
         }
+        for f in &fragments {
+            if !(lo..=hi).contains(&stored[f.at]) {
+                self.access.ended.bounds |= f.bit;
+            }
+        }
         fragments.retain(|f| (lo..=hi).contains(&stored[f.at]));
         self.counters.fragments.bounds_failed += (before - fragments.len()) as u64;
         fragments
@@ -304,6 +310,7 @@ impl Block<'_> {
                 left.push(f);
             } else {
                 self.counters.fragments.stencil_failed += 1;
+                self.access.ended.stencil |= f.bit;
                 self.stencil_operation(face.fail_op, &f);
             }
         }
@@ -350,6 +357,7 @@ impl Block<'_> {
                 left.push(f);
             } else {
                 self.counters.fragments.depth_failed += 1;
+                self.access.ended.depth |= f.bit;
                 self.stencil_operation(face.depth_fail_op, &f);
             }
         }

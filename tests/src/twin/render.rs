@@ -243,6 +243,7 @@ fn run_triangle(
                 primitive: triangle.primitive,
                 piece: triangle.piece,
                 block: [(x / 8) as u16, (y / 8) as u16],
+                front: triangle.front,
                 ..BlockAccess::default()
             };
             events.extend(

@@ -5,14 +5,15 @@ use std::path::PathBuf;
 use clap::Args;
 use gnomon_pipeline::measure::comparison::{ReferenceKind, UnknownReference};
 
-use crate::flags::{EnvArgs, GpuArgs, parse_setting, parse_size, parse_time};
+use crate::flags::{EnvArgs, GpuArgs, SceneArgs, parse_setting, parse_size, parse_time};
 
 /// Flags of `compare`.
 #[derive(Debug, Args)]
 #[command(after_help = COMPARE_HELP)]
 pub(crate) struct CompareArgs {
-    /// Built-in scene (see `gnomon scenes`), .toml scene file or .obj model
-    pub(crate) scene: String,
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
     /// Techniques (see `gnomon techniques`), each with settings of its own behind
     /// colons if need be: NAME:KEY=VALUE:...
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', required = true, value_parser = parse_entry)]

@@ -7,7 +7,7 @@ use gnomon_pipeline::measure::render::RenderSettings;
 use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
-use gnomon_pipeline::world::scene::{Scene, SceneSource};
+use gnomon_pipeline::world::scene::Scene;
 
 use super::args::{CompareArgs, EntryArg};
 use crate::error::CliError;
@@ -40,7 +40,7 @@ pub(super) struct Entry {
 impl Job {
     pub(super) fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
         let entries = entries(args, registry, Some(args.light))?;
-        let scene = SceneSource::open(&args.scene)?.at(args.time)?;
+        let scene = args.scene.open()?.at(args.time)?;
         let (given, count) = (args.light, scene.lights.len());
         if given >= count {
             return Err(CompareError::NoSuchLight { given, count }.into());

@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::flags::{EnvArgs, GpuArgs, parse_setting, parse_size, parse_time};
+use crate::flags::{EnvArgs, GpuArgs, SceneArgs, parse_setting, parse_size, parse_time};
 use crate::overlay::OverlayKind;
 
 /// Flags of `render`.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// Built-in scene (see `gnomon scenes`), .toml scene file or .obj model
-    pub(crate) scene: String,
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
     /// Technique (see `gnomon techniques`)
     #[arg(long, value_name = "NAME", default_value = "shadow-volumes")]
     pub(crate) technique: String,

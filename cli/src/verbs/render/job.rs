@@ -106,7 +106,7 @@ impl Job {
 /// Scenes by time, under the environment that was asked for.
 pub(super) fn source(args: &RenderArgs) -> Result<SceneSource, CliError> {
     let request = args.environment.request(args.lights);
-    Ok(SceneSource::open(&args.scene)?.with_environment(request))
+    Ok(args.scene.open()?.with_environment(request))
 }
 
 /// Refuses an overlay of what the scene does not have.

@@ -44,7 +44,7 @@ fn drawn(name: &str, set: &[&str]) -> Drawn {
     let built = build(&scene, SIZE, &params).unwrap();
     gpu.load(&built.frame.recording).unwrap();
     let mut covered = Covered::new(&built.wedge_draws);
-    gpu.submit_observed(&built.frame.recording.list, &mut covered)
+    gpu.submit_observed(&built.frame.recording.list, Wants::default(), &mut covered)
         .unwrap();
     let texture = gpu.texture(built.frame.outputs.depth_stencil).unwrap();
     let depth = texture.read_depth(Subresource::default()).unwrap();

@@ -22,7 +22,7 @@
 mod key;
 
 use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -32,6 +32,7 @@ use super::area::VisibilityImage;
 use super::sampled::SampledOracle;
 use super::surfaces::Surfaces;
 use crate::world::error::LightError;
+use crate::world::files::{self, FileError};
 use crate::world::light::LightShape;
 use crate::world::scene::Scene;
 use key::Key;
@@ -181,7 +182,7 @@ impl OracleCache {
         let number = WRITES.fetch_add(1, Ordering::Relaxed);
         let unique = format!("tmp-{}-{number}", std::process::id());
         let unfinished = path.with_extension(unique);
-        let written = File::create(&unfinished)
+        let written = File::create_new(&unfinished)
             .and_then(|mut file| file.write_all(bytes))
             .and_then(|()| fs::rename(&unfinished, path));
         if written.is_err() {
@@ -194,16 +195,17 @@ impl OracleCache {
 
 /// The image in a file; `None` if there is no such file.
 fn read(path: &Path, key: &Key, size: [u32; 2]) -> Result<Option<VisibilityImage>, String> {
-    let file = match File::open(path) {
-        Ok(file) => file,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+    let length = HEADER + size[0] as usize * size[1] as usize * 8 + CHECKSUM;
+    let bytes = match files::read(path, length as u64) {
+        Ok(bytes) => bytes,
+        Err(FileError::Unreadable(e)) if e.kind() == std::io::ErrorKind::NotFound => {
+            return Ok(None);
+        }
+        Err(FileError::TooLong { .. }) => {
+            return Err(format!("too long: {length} bytes are expected"));
+        }
         Err(e) => return Err(e.to_string()),
     };
-    let length = HEADER + size[0] as usize * size[1] as usize * 8 + CHECKSUM;
-    let mut bytes = Vec::new();
-    // One more than wanted shows that there is too much, however much.
-    let read = file.take(length as u64 + 1).read_to_end(&mut bytes);
-    read.map_err(|e| e.to_string())?;
     decode(&bytes, length, key, size).map(Some)
 }
 

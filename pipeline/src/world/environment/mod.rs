@@ -48,6 +48,7 @@ pub use error::EnvironmentError;
 pub use fit::{AreaFit, Fit, FitSettings, LightForm, ResidualRule};
 pub use placed::{DISTANCE, PlacedEnvironment};
 
+use crate::world::files::SceneFolder;
 use crate::world::warning::SceneWarning;
 use layout::Picture;
 
@@ -92,11 +93,20 @@ impl Environment {
     /// # Errors
     /// It cannot be read, has no known layout, or no light in it.
     pub fn open(name: &str, settings: MapSettings) -> Result<Self, EnvironmentError> {
+        Self::open_from(name, None, settings)
+    }
+
+    /// The same; a file must lie in `folder` if there is one.
+    pub(crate) fn open_from(
+        name: &str,
+        folder: Option<&SceneFolder>,
+        settings: MapSettings,
+    ) -> Result<Self, EnvironmentError> {
         settings.check()?;
         let (faces, warnings) = if name == SKY {
             (sky::faces(settings.side, settings.turn), Vec::new())
         } else {
-            let picture = read::open(Path::new(name))?;
+            let picture = read::open(Path::new(name), folder)?;
             let faces = picture.faces(settings.side, settings.turn);
             (faces, picture.warnings)
         };

@@ -1,73 +1,109 @@
 //! Maps from files: Radiance `.hdr` and OpenEXR, by way of the `image` crate.
 //!
-//! The only place of this crate that knows that crate, and it only reads.
+//! Only this file and its two modules know that crate, and they only read.
+
+mod exr;
+mod hdr;
 
 use std::path::Path;
 
-use image::{ImageFormat, ImageReader};
-
 use super::EnvironmentError;
 use super::layout::Picture;
+use crate::world::files::{self, FileError, SceneFolder};
+use crate::world::warning::SceneWarning;
 
 /// Files of a folder of six, in the order of faces.
 const NAMES: [&str; 6] = ["px", "nx", "py", "ny", "pz", "nz"];
 
-/// A file, or a folder of six.
-pub(super) fn open(path: &Path) -> Result<Picture, EnvironmentError> {
-    let name = path.display().to_string();
-    if path.is_dir() {
-        return six(path, &name);
-    }
-    let (size, texels) = file(path)?;
-    Picture::new(&name, size, texels)
+/// Bytes of a map that are read at most.
+const MAX_MAP_BYTES: u64 = 512 << 20;
+
+/// Texels of a map at most: 11,585 x 5,792, far more than its lights are fitted to.
+const MAX_TEXELS: usize = 1 << 26;
+
+/// A picture as its file has it.
+#[derive(Debug)]
+struct Read {
+    size: [usize; 2],
+    /// Linear radiance, rows from the top.
+    texels: Vec<[f32; 3]>,
+    warnings: Vec<SceneWarning>,
 }
 
-type Read = ([usize; 2], Vec<[f32; 3]>);
-
-fn file(path: &Path) -> Result<Read, EnvironmentError> {
+/// A file, or a folder of six, which must lie in `within` if there is such.
+pub(super) fn open(path: &Path, within: Option<&SceneFolder>) -> Result<Picture, EnvironmentError> {
     let name = path.display().to_string();
-    let unreadable = |why: String| EnvironmentError::Unreadable {
-        name: name.clone(),
-        why,
+    let inside = within.map_or(Ok(()), |folder| folder.check(path));
+    inside.map_err(|e| unreadable(&name, e))?;
+    let read = if path.is_dir() {
+        six(path, &name, within)?
+    } else {
+        file(path, within)?
     };
-    let reader = ImageReader::open(path).map_err(|e| unreadable(e.to_string()))?;
-    let reader = reader
-        .with_guessed_format()
-        .map_err(|e| unreadable(e.to_string()))?;
-    let known = [Some(ImageFormat::Hdr), Some(ImageFormat::OpenExr)];
-    if !known.contains(&reader.format()) {
-        return Err(EnvironmentError::UnknownKind { name });
+    let mut picture = Picture::new(&name, read.size, read.texels)?;
+    picture.warnings.extend(read.warnings);
+    Ok(picture)
+}
+
+fn unreadable(name: &str, why: FileError) -> EnvironmentError {
+    EnvironmentError::Unreadable {
+        name: name.to_owned(),
+        why: why.to_string(),
     }
-    let decoded = reader.decode().map_err(|e| unreadable(e.to_string()))?;
-    let picture = decoded.into_rgb32f();
-    let size = [picture.width() as usize, picture.height() as usize];
-    Ok((size, picture.pixels().map(|p| p.0).collect()))
+}
+
+fn file(path: &Path, within: Option<&SceneFolder>) -> Result<Read, EnvironmentError> {
+    let name = path.display().to_string();
+    let bytes = match within {
+        Some(folder) => folder.read(path, MAX_MAP_BYTES),
+        None => files::read(path, MAX_MAP_BYTES),
+    };
+    let bytes = bytes.map_err(|e| unreadable(&name, e))?;
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let decoded = if bytes.starts_with(hdr::MAGIC) {
+        hdr::decode(bytes)
+    } else if bytes.starts_with(exr::MAGIC) {
+        exr::decode(bytes)
+    } else {
+        return Err(EnvironmentError::UnknownKind { name });
+    };
+    decoded.map_err(|why| EnvironmentError::Unreadable { name, why })
 }
 
 /// The six faces below each other.
-fn six(folder: &Path, name: &str) -> Result<Picture, EnvironmentError> {
-    let mut all = Vec::new();
-    let mut side = 0;
+fn six(folder: &Path, name: &str, within: Option<&SceneFolder>) -> Result<Read, EnvironmentError> {
+    let mut all = Read {
+        size: [0; 2],
+        texels: Vec::new(),
+        warnings: Vec::new(),
+    };
     for face in NAMES {
         let path = ["hdr", "exr"].map(|e| folder.join(format!("{face}.{e}")));
-        let found = path.iter().find(|p| p.is_file());
-        let (size, texels) = file(found.ok_or_else(|| EnvironmentError::Unreadable {
+        let found = path.iter().find(|p| p.exists());
+        let missing = || EnvironmentError::Unreadable {
             name: name.to_owned(),
             why: format!("the folder has no {face}.hdr or {face}.exr"),
-        })?)?;
-        side = if all.is_empty() { size[0] } else { side };
-        if size != [side, side] {
+        };
+        let read = file(found.ok_or_else(missing)?, within)?;
+        let side = if all.texels.is_empty() {
+            read.size[0]
+        } else {
+            all.size[0]
+        };
+        if read.size != [side, side] {
             return Err(EnvironmentError::Faces {
                 name: name.to_owned(),
                 face: face.to_owned(),
-                width: size[0],
-                height: size[1],
+                width: read.size[0],
+                height: read.size[1],
                 side,
             });
         }
-        all.extend(texels);
+        all.size = [side, 6 * side];
+        all.texels.extend(read.texels);
+        all.warnings.extend(read.warnings);
     }
-    Picture::new(name, [side, 6 * side], all)
+    Ok(all)
 }
 
 #[cfg(test)]
@@ -117,7 +153,7 @@ mod tests {
     #[test]
     fn hdr_and_exr_files_hold_the_same_map() {
         let folder = Folder::new("formats");
-        let of = |path: PathBuf| open(&path).unwrap();
+        let of = |path: PathBuf| open(&path, None).unwrap();
         let hdr = of(folder.save("a.hdr", [8, 4], texel));
         let exr = of(folder.save("a.exr", [8, 4], texel));
         assert_eq!(hdr.texels, exr.texels);
@@ -141,17 +177,17 @@ mod tests {
             );
         }
         folder.save("ny.exr", [5, 4], |_, _| [1.0; 3]);
-        let wrong = open(&folder.0).unwrap_err().to_string();
+        let wrong = open(&folder.0, None).unwrap_err().to_string();
         assert!(wrong.contains("ny is 5x4"), "{wrong}");
         fs::remove_file(folder.0.join("py.exr")).unwrap();
-        let missing = open(&folder.0).unwrap_err().to_string();
+        let missing = open(&folder.0, None).unwrap_err().to_string();
         assert!(missing.contains("no py.hdr or py.exr"), "{missing}");
     }
 
     #[test]
     fn what_is_no_map_is_refused() {
         let folder = Folder::new("wrong");
-        let message = |path: &Path| open(path).unwrap_err().to_string();
+        let message = |path: &Path| open(path, None).unwrap_err().to_string();
         assert!(message(&folder.0.join("none.hdr")).contains("none.hdr"));
         let text = folder.0.join("text.hdr");
         fs::write(&text, "not a picture").unwrap();

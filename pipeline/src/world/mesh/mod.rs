@@ -1,8 +1,11 @@
 //! Indexed triangle meshes in world space.
 
+mod normal_tree;
 mod normals;
 
 pub use normals::Shading;
+
+use std::collections::BTreeMap;
 
 use glam::DVec3;
 
@@ -166,8 +169,8 @@ pub struct ShadingVertices {
 impl ShadingVertices {
     fn new(mesh: &Mesh) -> Self {
         let mut out = Self::default();
-        // Normals met so far at each position: (normal index, vertex here).
-        let mut met: Vec<Vec<(u32, u32)>> = vec![Vec::new(); mesh.positions.len()];
+        // Normals met so far at each position, and their vertices here.
+        let mut met: Vec<BTreeMap<u32, u32>> = vec![BTreeMap::new(); mesh.positions.len()];
         for (corners, normals) in mesh.triangles.iter().zip(&mesh.normal_triangles) {
             let pair = |k: usize| (corners[k], normals[k]);
             let triangle = [0, 1, 2].map(|k| vertex_of(&mut met, mesh, pair(k), &mut out));
@@ -185,18 +188,13 @@ impl ShadingVertices {
 }
 
 fn vertex_of(
-    met: &mut [Vec<(u32, u32)>],
+    met: &mut [BTreeMap<u32, u32>],
     mesh: &Mesh,
     (position, normal): (u32, u32),
     out: &mut ShadingVertices,
 ) -> u32 {
-    let known = &mut met[position as usize];
-    if let Some(&(_, vertex)) = known.iter().find(|(n, _)| *n == normal) {
-        return vertex;
-    }
-    let vertex = out.push(mesh, position, normal);
-    known.push((normal, vertex));
-    vertex
+    let known = met[position as usize].entry(normal);
+    *known.or_insert_with(|| out.push(mesh, position, normal))
 }
 
 #[cfg(test)]

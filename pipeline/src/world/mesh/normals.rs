@@ -1,7 +1,10 @@
 //! Shading normals: area-weighted, in f64, in a fixed order of summation.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
+use super::normal_tree::NormalTree;
 use super::{narrow, widen};
 
 /// How shading normals are formed from triangles.
@@ -80,13 +83,24 @@ fn creased(
 ) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let incident = incident_triangles(vertices, triangles);
     let units: Vec<DVec3> = areas.iter().map(|a| *a / a.length().max(1e-30)).collect();
+    let trees: Vec<Option<NormalTree<'_>>> = incident
+        .iter()
+        .map(|t| (t.len() > MANY).then(|| NormalTree::new(t, &units, areas)))
+        .collect();
     let mut normals: Vec<[f32; 3]> = Vec::new();
-    let mut met: Vec<Vec<u32>> = vec![Vec::new(); vertices]; // normals in use at each position
+    let mut met: Vec<Met> = vec![Met::new(); vertices];
     let mut corner_normal = |vertex: u32, own: usize| {
-        let around = incident[vertex as usize].iter().map(|&t| t as usize);
-        let near = around.filter(|&t| t == own || units[t].dot(units[own]) >= least_cosine);
-        let normal = unit(near.fold(DVec3::ZERO, |sum, t| sum + areas[t]));
-        intern(&mut normals, &mut met[vertex as usize], normal)
+        let near = |t: usize| units[t].dot(units[own]) >= least_cosine;
+        let sum = match &trees[vertex as usize] {
+            Some(tree) if near(own) => tree.sum_near(units[own], least_cosine),
+            Some(tree) => tree.sum_near(units[own], least_cosine) + areas[own],
+            None => {
+                let around = incident[vertex as usize].iter().map(|&t| t as usize);
+                let near = around.filter(|&t| t == own || near(t));
+                near.fold(DVec3::ZERO, |sum, t| sum + areas[t])
+            }
+        };
+        intern(&mut normals, &mut met[vertex as usize], unit(sum))
     };
     let indices = triangles
         .iter()
@@ -96,19 +110,18 @@ fn creased(
     (normals, indices)
 }
 
+/// Triangles round a vertex above which a tree sums them.
+const MANY: usize = 512;
+
+/// Normals in use at one position, by their bits.
+type Met = BTreeMap<[u32; 3], u32>;
+
 /// Index of `normal` among those in use at one position, added when new.
-fn intern(normals: &mut Vec<[f32; 3]>, met: &mut Vec<u32>, normal: [f32; 3]) -> u32 {
-    let bits = |n: [f32; 3]| n.map(f32::to_bits);
-    if let Some(&known) = met
-        .iter()
-        .find(|&&i| bits(normals[i as usize]) == bits(normal))
-    {
-        return known;
-    }
-    normals.push(normal);
-    let index = (normals.len() - 1) as u32;
-    met.push(index);
-    index
+fn intern(normals: &mut Vec<[f32; 3]>, met: &mut Met, normal: [f32; 3]) -> u32 {
+    *met.entry(normal.map(f32::to_bits)).or_insert_with(|| {
+        normals.push(normal);
+        (normals.len() - 1) as u32
+    })
 }
 
 fn incident_triangles(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
@@ -162,6 +175,31 @@ mod tests {
         for (p, n) in mesh.positions().iter().zip(mesh.normals()) {
             assert!(widen(*p).dot(widen(*n)) > 0.99);
         }
+    }
+
+    /// The height of the normal at the tip of a cone, in each of its triangles.
+    fn heights_at_tip(segments: u32) -> Vec<f32> {
+        let (tip, middle) = (segments, segments + 1);
+        let mut cone = shape::Shape::default();
+        for k in 0..segments {
+            let (c, s) = shape::on_circle(shape::step_angle(k, segments));
+            cone.positions.push(DVec3::new(c, 0.0, -s));
+            let next = (k + 1) % segments;
+            cone.triangles.extend([[k, next, tip], [next, k, middle]]);
+        }
+        cone.positions.extend([DVec3::Y, DVec3::ZERO]);
+        let mesh = cone.into_mesh(Shading::Crease { degrees: 60.0 }).unwrap();
+        let sides = mesh.normal_triangles().iter().step_by(2);
+        sides.map(|n| mesh.normals()[n[2] as usize][1]).collect()
+    }
+
+    #[test]
+    fn vertices_of_many_triangles_are_shaded_as_others() {
+        let (few, many) = (heights_at_tip(MANY as u32), heights_at_tip(MANY as u32 + 1));
+        for height in many.iter().chain(&few) {
+            assert!((height - few[0]).abs() < 0.01, "{height} {}", few[0]);
+        }
+        assert!(few[0] > 0.7 && few[0] < 0.99, "{}", few[0]);
     }
 
     #[test]

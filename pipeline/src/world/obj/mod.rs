@@ -1,39 +1,62 @@
 //! Meshes from Wavefront OBJ files.
 //!
-//! `tobj` builds the mesh. Before it, a scan reads the text once on its own,
-//! because tobj's errors name no line, it renumbers vertices object by object
-//! (so a solid split over several `g` groups would fall apart), and its fan
-//! triangulation does not say when a polygon was not convex. The scan rejects
-//! what is invalid, with the line and the value, and hands tobj only the
-//! positions and faces, as one object: two faces share a vertex exactly when
-//! they name the same `v` line.
+//! `tobj` builds the mesh, from text that is rewritten for it: its errors name no
+//! line, it renumbers vertices object by object (so a solid split over several `g`
+//! groups would fall apart), it knows neither CR alone as the end of a line nor
+//! comments behind statements, and its triangulation is a fan whatever the polygon.
+//! So a scan reads the text once on its own ([`lines`], [`scan`]), points of equal
+//! coordinates become one ([`weld`]), faces are freed of corners that add nothing
+//! ([`corners`]) and cut into triangles ([`polygon`]), and tobj gets positions and
+//! triangles of one object ([`mesh`]).
+//!
+//! Coordinates stay in f64 until the model has its place in a scene: in f32 a model
+//! far from its origin, as geodetic coordinates are, would lose its shape.
 //!
 //! Of materials, `Kd`, `Ks`, `Ns` and `illum` of the files that `mtllib` names are
 //! used, as linear RGB; whatever is wrong with them is a warning. Texture
 //! coordinates and the file's own normals are not used.
 
+mod boundary;
+mod corners;
+mod library;
+mod lines;
+mod mesh;
 mod mtl;
+mod paint;
 mod polygon;
 mod scan;
+mod weld;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::world::error::MeshError;
+use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::material::MaterialPart;
-use crate::world::mesh::{Mesh, Shading};
+use crate::world::shape::Shape;
 use crate::world::warning::SceneWarning;
+pub use lines::NotText;
+use mesh::Triangles;
+use paint::{Libraries, Paint};
+use scan::{Scan, Tally};
+
+/// Bytes of a model that are read at most: some four million triangles.
+pub const MAX_OBJ_BYTES: u64 = 256 << 20;
+
+/// Bytes of a material library that are read at most.
+pub const MAX_MTL_BYTES: u64 = 16 << 20;
 
 /// A mesh read from OBJ text, and what was amiss without stopping it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjMesh {
-    /// All faces of the file as one mesh; vertices in order of first use.
-    pub mesh: Mesh,
+    /// All faces of the file as one solid, in the file's own coordinates; points in
+    /// order of first use, no two of them equal.
+    pub shape: Shape,
     /// Triangles that have a material, material after material.
     pub parts: Vec<MaterialPart>,
-    /// Codes `concave-polygons`, `skipped-faces`, `unsupported-statements`,
-    /// `missing-mtl`, `bad-mtl`, `limited-mtl`, `ignored-maps`, `unknown-material`.
+    /// Codes `crossing-polygons`, `repeated-corners`, `degenerate-faces`,
+    /// `skipped-faces`, `unsupported-statements`, `missing-mtl`, `bad-mtl`,
+    /// `limited-mtl`, `ignored-maps`, `unknown-material`.
     pub warnings: Vec<SceneWarning>,
 }
 
@@ -51,6 +74,17 @@ pub struct ObjError {
     pub problem: ObjProblem,
 }
 
+impl ObjError {
+    fn whole_file(file: &str, problem: ObjProblem) -> Self {
+        Self {
+            file: file.to_owned(),
+            line: None,
+            object: None,
+            problem,
+        }
+    }
+}
+
 fn place(line: Option<usize>) -> String {
     line.map_or(String::new(), |l| format!(":{l}"))
 }
@@ -63,22 +97,27 @@ fn inside(object: &Option<String>) -> String {
 
 /// What is wrong with OBJ text, with the value met and what would be valid.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ObjProblem {
     /// The file could not be read.
-    #[error("cannot be read: {0}")]
-    Unreadable(#[from] std::io::Error),
-    /// No face with at least three vertices.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The bytes are no text.
+    #[error(transparent)]
+    NotText(#[from] NotText),
+    /// No face that covers anything.
     #[error("no faces; expected at least one line such as 'f 1 2 3'")]
     NoFaces,
     /// A vertex line without three numbers.
-    #[error("vertex line '{line}'; expected 'v x y z' with three numbers")]
+    #[error("vertex line '{}'; expected 'v x y z' with three numbers", excerpt(.line))]
     BadVertex {
         /// The line met.
         line: String,
     },
     /// A vertex coordinate that f32 cannot hold as a finite number.
     #[error(
-        "vertex {vertex} has the coordinate '{value}'; every coordinate must be finite and below 3.4e38"
+        "vertex {vertex} has the coordinate '{}'; every coordinate must be finite and below 3.4e38",
+        excerpt(.value)
     )]
     NonFinite {
         /// Number of the vertex, from 1.
@@ -88,17 +127,24 @@ pub enum ObjProblem {
     },
     /// A face corner that is not an index.
     #[error(
-        "face corner '{value}'; expected v, v/vt, v//vn or v/vt/vn with v a whole number other than 0"
+        "face corner '{}'; expected v, v/vt, v//vn or v/vt/vn with v a whole number other than 0",
+        excerpt(.value)
     )]
     BadCorner {
         /// The corner as written.
         value: String,
     },
-    /// A face index without vertex.
-    #[error(
-        "face uses vertex {index}, but {vertices} vertices are defined up to here; valid are 1..={vertices} and -{vertices}..=-1"
-    )]
+    /// A face index above all vertices of the file.
+    #[error("face uses vertex {index}, but the file defines {}", up_to(*.vertices))]
     OutOfRange {
+        /// The index as written, or what it means counted from the first vertex.
+        index: i64,
+        /// Vertices of the file.
+        vertices: usize,
+    },
+    /// A face index that counts back beyond the first vertex.
+    #[error("face uses vertex {index}, but up to here there are {}", back_to(*.vertices))]
+    BeforeFirst {
         /// The index as written.
         index: i64,
         /// Vertices defined before this line.
@@ -107,23 +153,105 @@ pub enum ObjProblem {
     /// `tobj` refused what the scan accepted.
     #[error("tobj: {0}")]
     Tobj(#[from] tobj::LoadError),
-    /// The triangles do not make a mesh.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
 }
 
-/// Reads an OBJ file and its material libraries.
+/// How many vertices there are, and which indices name them.
+fn up_to(vertices: usize) -> String {
+    match vertices {
+        0 => "no vertices; expected lines such as 'v 0 0 0'".to_owned(),
+        n => format!("{n} vertices; valid are 1..={n}"),
+    }
+}
+
+/// The same, counted back.
+fn back_to(vertices: usize) -> String {
+    match vertices {
+        0 => "no vertices to count back to".to_owned(),
+        n => format!("{n} vertices; valid are -{n}..=-1"),
+    }
+}
+
+/// The beginning of what a file says: lines may be as long as the file.
+fn excerpt(text: &str) -> String {
+    beginning(text, 80)
+}
+
+fn beginning(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Reads an OBJ file and its material libraries, which must lie in its folder.
 ///
 /// # Errors
 /// See [`ObjProblem`]. A missing or invalid `.mtl` is a warning.
-pub fn load(path: &Path, shading: Shading) -> Result<ObjMesh, ObjError> {
+pub fn load(path: &Path) -> Result<ObjMesh, ObjError> {
+    load_given(path, Outside::Refused)
+}
+
+/// Reads an OBJ file that the user names, wherever it is.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_given(path: &Path, outside: Outside) -> Result<ObjMesh, ObjError> {
+    let folder = SceneFolder::of(path, outside);
+    of_bytes(files::read(path, MAX_OBJ_BYTES), path, &folder)
+}
+
+/// Reads an OBJ file that a scene in `folder` names.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_from(path: &Path, folder: &SceneFolder) -> Result<ObjMesh, ObjError> {
+    of_bytes(folder.read(path, MAX_OBJ_BYTES), path, folder)
+}
+
+fn of_bytes(
+    bytes: Result<Vec<u8>, FileError>,
+    path: &Path,
+    folder: &SceneFolder,
+) -> Result<ObjMesh, ObjError> {
     let file = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| whole_file(&file, e.into()))?;
-    let library = |name: &str| {
-        let path = path.with_file_name(name);
-        Some((path.display().to_string(), std::fs::read(&path).ok()?))
-    };
-    parse_with(&bytes, &file, shading, Some(&library))
+    let bytes = bytes.map_err(|e| ObjError::whole_file(&file, e.into()))?;
+    parse_with(&bytes, &file, Some(&Beside { path, folder }))
+}
+
+/// Libraries in the folder of a model.
+struct Beside<'a> {
+    path: &'a Path,
+    folder: &'a SceneFolder,
+}
+
+impl Beside<'_> {
+    /// Names may be written with the separators of another system.
+    fn path_of(&self, name: &str) -> PathBuf {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let written = folder.join(name);
+        let turned = folder.join(name.replace('\\', "/"));
+        if !self.is_file(&written) && self.is_file(&turned) {
+            turned
+        } else {
+            written
+        }
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        self.folder.check(path).is_ok() && path.is_file()
+    }
+}
+
+impl Libraries for Beside<'_> {
+    fn has(&self, name: &str) -> bool {
+        self.is_file(&self.path_of(name))
+    }
+
+    fn read(&self, name: &str) -> Result<(String, Vec<u8>), FileError> {
+        let path = self.path_of(name);
+        let bytes = self.folder.read(&path, MAX_MTL_BYTES)?;
+        Ok((path.display().to_string(), bytes))
+    }
 }
 
 /// Reads OBJ text without its materials; `file` names it in messages. Any bytes are accepted or
@@ -131,62 +259,96 @@ pub fn load(path: &Path, shading: Shading) -> Result<ObjMesh, ObjError> {
 ///
 /// # Errors
 /// See [`ObjProblem`].
-pub fn parse(bytes: &[u8], file: &str, shading: Shading) -> Result<ObjMesh, ObjError> {
-    parse_with(bytes, file, shading, None)
+pub fn parse(bytes: &[u8], file: &str) -> Result<ObjMesh, ObjError> {
+    parse_with(bytes, file, None)
 }
 
 fn parse_with(
     bytes: &[u8],
     file: &str,
-    shading: Shading,
-    library: Option<&scan::Library<'_>>,
+    libraries: Option<&dyn Libraries>,
 ) -> Result<ObjMesh, ObjError> {
-    let scan = scan::Scan::of(bytes).map_err(|e| ObjError {
-        file: file.to_owned(),
-        line: Some(e.line),
-        object: e.object,
-        problem: e.problem,
-    })?;
-    let built = build(&scan, shading).map_err(|problem| whole_file(file, problem))?;
-    let mut paint = library.map_or_else(Default::default, |l| scan.paint(l));
-    let parts = scan.parts(&mut paint);
+    let scan = Scan::of(bytes, file)?;
+    let triangles = Triangles::of(&scan);
+    let shape = triangles.shape(&scan.points);
+    let shape = shape.map_err(|problem| ObjError::whole_file(file, problem))?;
+    let paint = libraries.map_or_else(Paint::default, |l| Paint::of(&scan, &triangles, l));
+    let warnings = warnings(&scan, &triangles, &paint);
     Ok(ObjMesh {
-        mesh: built,
-        parts,
-        warnings: scan.warnings(&paint),
+        shape,
+        parts: paint.parts,
+        warnings,
     })
 }
 
-fn whole_file(file: &str, problem: ObjProblem) -> ObjError {
-    ObjError {
-        file: file.to_owned(),
-        line: None,
-        object: None,
-        problem,
-    }
-}
-
-fn build(scan: &scan::Scan, shading: Shading) -> Result<Mesh, ObjProblem> {
-    if scan.faces == 0 {
-        return Err(ObjProblem::NoFaces);
-    }
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        single_index: false,
-        ..tobj::LoadOptions::default()
+fn warnings(scan: &Scan, triangles: &Triangles, paint: &Paint) -> Vec<SceneWarning> {
+    let materials = &paint.materials;
+    let all: [(_, &Tally, _); 10] = [
+        (
+            "crossing-polygons",
+            &triangles.crossing,
+            "polygons whose outline crosses itself were cut into fans, which no cut can do right; triangulate the file",
+        ),
+        (
+            "repeated-corners",
+            &triangles.repeated,
+            "corners that repeat others of their face were left out",
+        ),
+        (
+            "degenerate-faces",
+            &triangles.degenerate,
+            "faces whose corners repeat so that they cover nothing were left out",
+        ),
+        (
+            "skipped-faces",
+            &scan.skipped,
+            "faces with fewer than three corners were skipped",
+        ),
+        (
+            "unsupported-statements",
+            &scan.unsupported,
+            "statements were ignored; only polygons are read",
+        ),
+        (
+            "missing-mtl",
+            &paint.missing,
+            "material libraries are missing or cannot be read; their faces are drawn in one material",
+        ),
+        (
+            "bad-mtl",
+            &materials.bad,
+            "statements of material libraries are not valid and were left out",
+        ),
+        (
+            "limited-mtl",
+            &materials.limited,
+            "reflectances were limited to 0..=1",
+        ),
+        (
+            "ignored-maps",
+            &materials.maps,
+            "texture maps were ignored; only Kd, Ks and Ns are used",
+        ),
+        (
+            "unknown-material",
+            &paint.unknown,
+            "materials are used that no library defines",
+        ),
+    ];
+    let found = all.into_iter().filter(|(_, tally, _)| tally.count > 0);
+    let warning = |(code, tally, what): (_, &Tally, &str)| SceneWarning {
+        code,
+        count: tally.count,
+        message: format!("{what} (first: {})", beginning(&tally.first, 400)),
     };
-    let no_materials = |_: &Path| Ok(Default::default());
-    let (models, _) = tobj::load_obj_buf(&mut scan.geometry.as_bytes(), &options, no_materials)?;
-    let mesh = models.into_iter().next().ok_or(ObjProblem::NoFaces)?.mesh;
-    let positions = mesh.positions.as_chunks::<3>().0.to_vec();
-    let triangles = mesh.indices.as_chunks::<3>().0.to_vec();
-    Ok(Mesh::new(positions, triangles, shading)?)
+    found.map(warning).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::world::adjacency::EdgeAdjacency;
+    use crate::world::mesh::Shading;
     use proptest::prelude::*;
 
     const CUBE: &str = "\
@@ -196,23 +358,29 @@ vn 0 0 1
 g front\nf 5//1 6//1 7//1 8//1\nf -5 -6 -7 -8\n
 g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-    const CUBE_WITH_LIBRARY: &str = "mtllib l\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+    const CUBE_WITH_LIBRARY: &str =
+        "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
 
     fn read(text: &str) -> Result<ObjMesh, ObjError> {
-        parse(text.as_bytes(), "t.obj", Shading::Smooth)
+        parse(text.as_bytes(), "t.obj")
     }
 
     fn message(text: &str) -> String {
         read(text).unwrap_err().to_string()
     }
 
+    fn volume_if_closed(read: &ObjMesh) -> f64 {
+        let mesh = read.shape.clone().into_mesh(Shading::Smooth).unwrap();
+        let report = EdgeAdjacency::new(mesh.triangles()).closedness(&mesh);
+        assert!(report.is_closed(), "{report}");
+        mesh.signed_volume()
+    }
+
     #[test]
     fn groups_do_not_tear_a_solid_apart() {
         let cube = read(CUBE).unwrap();
-        assert_eq!(cube.mesh.positions().len(), 8);
-        let report = EdgeAdjacency::new(cube.mesh.triangles()).closedness(&cube.mesh);
-        assert!(report.is_closed(), "{report}");
-        assert_eq!(cube.mesh.signed_volume(), 8.0);
+        assert_eq!(cube.shape.positions.len(), 8);
+        assert_eq!(volume_if_closed(&cube), 8.0);
         assert_eq!(cube.warnings, []);
     }
 
@@ -220,16 +388,30 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     fn errors_name_file_line_object_and_value() {
         assert_eq!(
             message("o thing\nv 0 0 0\nv 1 0 0\n\nf 1 2 3\n"),
-            "t.obj:5: in 'thing': face uses vertex 3, but 2 vertices are defined up to here; \
-             valid are 1..=2 and -2..=-1"
+            "t.obj:5: in 'thing': face uses vertex 3, but the file defines 2 vertices; \
+             valid are 1..=2"
         );
+        assert_eq!(
+            message("v 0 0 0\nf -1 -1 -2\nv 0 0 0"),
+            "t.obj:2: face uses vertex -2, but up to here there are 1 vertices; valid are -1..=-1"
+        );
+        for none in ["f 1 2 3", "f -1 -2 -3"] {
+            let message = message(none);
+            assert!(
+                message.contains("no vertices") && !message.contains("..="),
+                "{message}"
+            );
+        }
+        let long = format!("v 0 0 {}", "x".repeat(1_000_000));
+        assert!(message(&long).len() < 300);
+        assert!(message("v 1,5 0 0\n").contains("'v 1,5 0 0'"));
         assert!(message("v 0 nan 0\n").starts_with("t.obj:1: vertex 1 has the coordinate 'nan'"));
         assert!(message("v 0 1e39 0\n").contains("'1e39'"));
         assert!(message("v 0 1\n").contains("'v 0 1'"));
         assert!(message("v 0 0 0\nf 1 x 1\n").contains("'x'"));
         assert!(message("v 0 0 0\nf 0 1 1\n").contains("'0'"));
         assert!(message("v 0 0 0\n").contains("no faces"));
-        let missing = load(Path::new("no-such-file.obj"), Shading::Flat).unwrap_err();
+        let missing = load(Path::new("no-such-file.obj")).unwrap_err();
         assert!(
             missing
                 .to_string()
@@ -238,24 +420,73 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     }
 
     #[test]
-    fn concave_polygons_and_skipped_statements_are_counted() {
-        let dart = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv 0.5 1 0\nf 1 2 3 4\nf 2 3 4 1\nf 1 2\ncurv 0 1\n";
-        let read = read(dart).unwrap();
-        let codes: Vec<_> = read.warnings.iter().map(|w| (w.code, w.count)).collect();
-        // The fan from the reflex corner's opposite works; from its neighbour not.
+    fn what_is_left_out_is_counted_with_its_first_line() {
+        let text = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv 0.5 1 0\nf 1 2 3 4\nf 2 3 4 1\nf 1 2\n\
+                    curv 0 1\nf 1 2 2 3 3\nf 1 2 1\nf 1 2 3 2\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 6 5 7\n";
+        let read = read(text).unwrap();
+        let found: Vec<_> = read
+            .warnings
+            .iter()
+            .map(|w| (w.code, w.count, &w.message))
+            .collect();
+        let expected = [
+            ("crossing-polygons", 1, "line 15"),
+            ("repeated-corners", 2, "line 9"),
+            ("degenerate-faces", 2, "line 10"),
+            ("skipped-faces", 1, "line 7"),
+            ("unsupported-statements", 1, "'curv' in line 8"),
+        ];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((code, count, message), (c, n, first)) in found.into_iter().zip(expected) {
+            assert_eq!((code, count), (c, n));
+            assert!(message.ends_with(&format!("(first: {first})")), "{message}");
+        }
+    }
+
+    #[test]
+    fn vertices_may_follow_faces_and_come_many_times() {
+        let forward = read("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").unwrap();
+        assert_eq!(forward.shape.triangles, [[0, 1, 2]]);
+        // A tetrahedron of faces with vertices of their own.
+        let [a, b, c, d] = ["v 0 0 0\n", "v 1 0 0\n", "v 0 1 -0\n", "v 0 0 1\n"];
+        let faces = [[a, c, b], [a, b, d], [b, c, d], [c, a, d]];
+        let text: String = faces
+            .iter()
+            .map(|f| format!("{}f -3 -2 -1\n", f.concat()))
+            .collect();
+        let apart = read(&text).unwrap();
+        assert_eq!(apart.shape.positions.len(), 4);
+        assert!((volume_if_closed(&apart) - 1.0 / 6.0).abs() < 1e-12);
+        assert_eq!(apart.warnings, []);
+    }
+
+    #[test]
+    fn coordinates_keep_their_digits() {
+        let read = read("v 5400000.001 0.1 0\nv 1 0 0\nv 0 1e-320 0\nf 1 2 3\n").unwrap();
         assert_eq!(
-            codes,
-            [
-                ("concave-polygons", 1),
-                ("skipped-faces", 1),
-                ("unsupported-statements", 1)
-            ]
+            read.shape.positions[0].to_array(),
+            [5_400_000.001, 0.1, 0.0]
         );
+        assert_eq!(read.shape.positions[2].y, 1e-320);
     }
 
     fn painted(text: &str, library: &str) -> ObjMesh {
-        let read = |name: &str| (name == "paint.mtl").then(|| (name.to_owned(), library.into()));
-        parse_with(text.as_bytes(), "t.obj", Shading::Flat, Some(&read)).unwrap()
+        parse_with(text.as_bytes(), "t.obj", Some(&One(library.as_bytes()))).unwrap()
+    }
+
+    /// A folder with `paint.mtl` in it.
+    struct One<'a>(&'a [u8]);
+
+    impl Libraries for One<'_> {
+        fn has(&self, name: &str) -> bool {
+            name == "paint.mtl"
+        }
+
+        fn read(&self, name: &str) -> Result<(String, Vec<u8>), FileError> {
+            let missing = || FileError::from(std::io::Error::from(std::io::ErrorKind::NotFound));
+            let bytes = self.has(name).then(|| self.0.to_vec());
+            Ok((name.to_owned(), bytes.ok_or_else(missing)?))
+        }
     }
 
     #[test]
@@ -291,7 +522,12 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
         let missing = codes(&model("none.mtl"), "");
         assert!(missing.len() == 1 && missing[0].0 == "missing-mtl");
         assert!(missing[0].1.contains("'none.mtl'"), "{missing:?}");
-        let unknown = codes(&model("paint.mtl"), "newmtl b\n");
+        let none = codes(&model("").replace("mtllib \n", ""), "");
+        assert!(
+            none.len() == 1 && none[0].0 == "unknown-material",
+            "{none:?}"
+        );
+        let unknown = codes(&model("paint.mtl # old"), "newmtl b\n");
         assert!(unknown.len() == 1 && unknown[0].0 == "unknown-material");
         let bad = codes(&model("paint.mtl"), "newmtl a\nKd red\n");
         assert!(bad.len() == 1 && bad[0].0 == "bad-mtl");
@@ -301,10 +537,7 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     #[test]
     fn comments_need_not_be_utf8_and_lines_may_continue() {
         let text = b"# caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 \\\n 1 0\nf 1 2 3\n";
-        assert_eq!(
-            parse(text, "t", Shading::Flat).unwrap().mesh.triangles(),
-            [[0, 1, 2]]
-        );
+        assert_eq!(parse(text, "t").unwrap().shape.triangles, [[0, 1, 2]]);
     }
 
     /// Lines that look like OBJ, mostly.
@@ -328,16 +561,15 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     proptest! {
         #[test]
         fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            let library = |_: &str| Some(("l".to_owned(), bytes.clone()));
-            let _ = parse_with(CUBE_WITH_LIBRARY.as_bytes(), "fuzz", Shading::Smooth, Some(&library));
-            let _ = parse(&bytes, "fuzz", Shading::Smooth);
+            let _ = parse_with(CUBE_WITH_LIBRARY.as_bytes(), "fuzz", Some(&One(&bytes)));
+            let _ = parse(&bytes, "fuzz");
         }
 
         #[test]
         fn no_near_obj_text_makes_it_panic(lines in prop::collection::vec(line(), 0..20)) {
             let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", lines.join("\n"));
-            if let Ok(read) = parse(text.as_bytes(), "fuzz", Shading::Smooth) {
-                prop_assert!(!read.mesh.triangles().is_empty());
+            if let Ok(read) = parse(text.as_bytes(), "fuzz") {
+                prop_assert!(!read.shape.triangles.is_empty());
             }
         }
 
@@ -345,7 +577,7 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
         fn corrupting_a_byte_never_panics(at in 0..CUBE.len(), to in any::<u8>()) {
             let mut bytes = CUBE.as_bytes().to_vec();
             bytes[at] = to;
-            let _ = parse(&bytes, "fuzz", Shading::Smooth);
+            let _ = parse(&bytes, "fuzz");
         }
     }
 }

@@ -7,8 +7,11 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::str::FromStr;
 
-use super::scan::{Tally, logical_lines};
+use super::library::unquoted;
+use super::lines::{keyword_and_rest, logical_lines, name_without_comment, without_comment};
+use super::scan::Tally;
 use crate::world::material::Material;
 
 /// Where a material gives no `Kd`.
@@ -20,7 +23,11 @@ const EXPONENT: f32 = 24.0;
 /// Materials of all libraries of a model, by name.
 #[derive(Debug, Default)]
 pub(super) struct Materials {
-    by_name: BTreeMap<String, Material>,
+    all: Vec<Material>,
+    /// By the whole rest of their `newmtl` line.
+    by_line: BTreeMap<String, usize>,
+    /// By the name without comment and quotes.
+    by_name: BTreeMap<String, usize>,
     /// Statements that are not valid.
     pub(super) bad: Tally,
     /// Reflectances outside 0..=1.
@@ -32,16 +39,35 @@ pub(super) struct Materials {
 }
 
 impl Materials {
-    /// The material called `name`.
-    pub(super) fn get(&self, name: &str) -> Option<Material> {
-        self.by_name.get(name).copied()
+    /// The material that the rest of a `usemtl` line names: as it is written, or
+    /// else without comment and quotes.
+    pub(super) fn find(&self, line: &str) -> Option<usize> {
+        let name = bare(line);
+        let by_line = |name| self.by_line.get(name);
+        let found = by_line(line).or_else(|| by_line(name));
+        found.or_else(|| self.by_name.get(name)).copied()
+    }
+
+    /// Material number `index`.
+    pub(super) fn material(&self, index: usize) -> Material {
+        self.all[index]
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.all.len()
     }
 
     /// Adds a library; of equal names the last one counts. `file` names it in
     /// warnings.
     pub(super) fn read(&mut self, bytes: &[u8], file: &str) {
+        self.libraries += 1;
         let mut scan = Scan::default();
-        for (number, line) in logical_lines(bytes) {
+        let lines = match logical_lines(bytes) {
+            Ok(lines) => lines,
+            Err(e) => return self.bad.add(|| format!("{file}: {e}")),
+        };
+        for (number, line) in lines {
             let at = || format!("{file}:{number}: '{}'", line.trim());
             match scan.line(&line) {
                 Statement::Used | Statement::Ignored => {}
@@ -51,30 +77,41 @@ impl Materials {
                 }
             }
         }
-        self.libraries += 1;
         match tobj::load_mtl_buf(&mut scan.valid.as_bytes()) {
-            Ok((materials, _)) => materials.iter().for_each(|m| self.take(m, file)),
+            Ok((materials, _)) => {
+                for (material, name) in materials.iter().zip(&scan.names) {
+                    self.take(material, name, file);
+                }
+            }
             Err(e) => self.bad.add(|| format!("{file}: tobj: {e}")),
         }
     }
 
-    fn take(&mut self, m: &tobj::Material, file: &str) {
+    fn take(&mut self, m: &tobj::Material, name: &str, file: &str) {
         let highlights = m.illumination_model.is_none_or(|model| model >= 2);
         let specular = m.specular.filter(|_| highlights).unwrap_or_default();
-        let mut reflectance = |rgb: [f32; 3]| {
+        let mut reflectance = |rgb: [f64; 3]| {
             if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
                 self.limited
-                    .add(|| format!("{file}: '{}' with {rgb:?}", m.name));
+                    .add(|| format!("{file}: '{name}' with {rgb:?}"));
             }
-            rgb.map(|v| v.clamp(0.0, 1.0))
+            rgb.map(|v| v.clamp(0.0, 1.0) as f32)
         };
         let material = Material {
-            albedo: reflectance(m.diffuse.unwrap_or(GREY)),
+            albedo: reflectance(m.diffuse.unwrap_or(GREY.map(f64::from))),
             specular: reflectance(specular),
-            shininess: m.shininess.unwrap_or(EXPONENT).max(1.0),
+            shininess: m.shininess.map_or(EXPONENT, |n| n as f32).max(1.0),
         };
-        self.by_name.insert(m.name.clone(), material);
+        let index = self.all.len();
+        self.all.push(material);
+        self.by_line.insert(name.to_owned(), index);
+        self.by_name.insert(bare(name).to_owned(), index);
     }
+}
+
+/// The name in the rest of a line.
+fn bare(line: &str) -> &str {
+    unquoted(name_without_comment(line))
 }
 
 /// What a line of a library is.
@@ -86,44 +123,81 @@ enum Statement {
     Bad(&'static str),
 }
 
+/// Statements of material libraries that say nothing of what is used.
+const IGNORED: [&str; 19] = [
+    "Ka",
+    "Ke",
+    "Tf",
+    "Tr",
+    "d",
+    "Ni",
+    "sharpness",
+    "halo",
+    "Pr",
+    "Pm",
+    "Ps",
+    "Pc",
+    "Pcr",
+    "aniso",
+    "anisor",
+    "Material",
+    "vp",
+    "Km",
+    "g",
+];
+
+/// Statements that name pictures, besides those that begin with `map_`.
+const MAPS: [&str; 6] = ["bump", "disp", "decal", "refl", "norm", "map"];
+
+fn is_map(keyword: &str) -> bool {
+    let keyword = keyword.to_ascii_lowercase();
+    keyword.starts_with("map_") || MAPS.contains(&keyword.as_str())
+}
+
 /// The statements for tobj.
 #[derive(Default)]
 struct Scan {
     valid: String,
+    /// The rest of each `newmtl` line; tobj knows materials by their number.
+    names: Vec<String>,
     named: bool,
 }
 
 impl Scan {
     fn line(&mut self, line: &str) -> Statement {
-        let line = line.trim();
-        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let rest = rest.trim();
+        let Some((keyword, rest)) = keyword_and_rest(line) else {
+            return Statement::Ignored;
+        };
+        let numbers = without_comment(rest).trim();
         match keyword {
             "newmtl" => self.name(rest),
-            "Kd" | "Ks" => self.color(keyword, rest),
+            "Kd" | "Ks" => self.color(keyword, numbers),
             "Ns" => self.number(
                 keyword,
-                rest,
+                numbers,
                 "one finite number from 0 after a newmtl",
-                |v: f32| v.is_finite() && v >= 0.0,
+                |v: &f32| v.is_finite() && *v >= 0.0,
             ),
             "illum" => self.number(
                 keyword,
-                rest,
+                numbers,
                 "a whole number 0 to 255 after a newmtl",
-                |_: u8| true,
+                |_: &u8| true,
             ),
-            map if map.starts_with("map_") || map == "bump" || map == "disp" => Statement::Map,
-            _ => Statement::Ignored,
+            map if is_map(map) => Statement::Map,
+            other if IGNORED.contains(&other) => Statement::Ignored,
+            _ => Statement::Bad("a statement of material libraries"),
         }
     }
 
     fn name(&mut self, name: &str) -> Statement {
-        self.named = !name.is_empty();
+        self.named = !bare(name).is_empty();
         if !self.named {
             return Statement::Bad("newmtl and a name");
         }
-        self.keep("newmtl", name)
+        let number = self.names.len().to_string();
+        self.names.push(name.to_owned());
+        self.keep("newmtl", &number)
     }
 
     /// One number is grey, three are red, green and blue.
@@ -138,17 +212,17 @@ impl Scan {
         }
     }
 
-    fn number<T: std::str::FromStr>(
+    fn number<T: FromStr + ToString>(
         &mut self,
         keyword: &str,
         rest: &str,
         expected: &'static str,
-        valid: impl Fn(T) -> bool,
+        valid: impl Fn(&T) -> bool,
     ) -> Statement {
-        if self.named && rest.parse().is_ok_and(valid) {
-            self.keep(keyword, rest)
-        } else {
-            Statement::Bad(expected)
+        match rest.parse() {
+            // Written anew, since tobj reads less than Rust does.
+            Ok(value) if self.named && valid(&value) => self.keep(keyword, &value.to_string()),
+            _ => Statement::Bad(expected),
         }
     }
 
@@ -174,19 +248,20 @@ mod tests {
             "# paint\nnewmtl red paint\nNs 96.5\nKa 0 0 0\nKd 0.8 0.1 0.1\nKs 0.5\nillum 2\nd 1\n\
              newmtl matt\nKd .25\nKs 1 1 1\nillum 1\nnewmtl bare\nNs 0\n",
         );
-        let red = m.get("red paint").unwrap();
+        let get = |name| m.find(name).map(|i| m.material(i));
+        let red = get("red paint").unwrap();
         assert_eq!((red.albedo, red.specular), ([0.8, 0.1, 0.1], [0.5; 3]));
         assert_eq!(red.shininess, 96.5);
         // Illumination model 1 has no highlights.
         assert_eq!(
-            m.get("matt"),
+            get("matt"),
             Some(Material {
                 shininess: EXPONENT,
                 ..Material::matt([0.25; 3])
             })
         );
-        assert_eq!(m.get("bare"), Some(Material::matt(GREY)));
-        assert_eq!(m.get("blue"), None);
+        assert_eq!(get("bare"), Some(Material::matt(GREY)));
+        assert_eq!(get("blue"), None);
         assert_eq!([m.bad.count, m.limited.count, m.maps.count], [0; 3]);
     }
 
@@ -206,6 +281,38 @@ mod tests {
             m.limited.first
         );
         assert!(m.maps.first.starts_with("t.mtl:9:"));
-        assert_eq!(m.get("a").unwrap().albedo, [1.0, 0.0, 0.5]);
+        assert_eq!(m.material(m.find("a").unwrap()).albedo, [1.0, 0.0, 0.5]);
+    }
+
+    #[test]
+    fn names_may_have_comments_and_signs() {
+        let m = read(
+            "newmtl red # brick\nKd 1 0 0 # red\nnewmtl Material #1\nKd 0 1 0#\n\
+             newmtl Material #2\nKd 0 0 1\nnewmtl #fff\nillum 1 # none\nnewmtl # nobody\n",
+        );
+        let albedo = |name| m.find(name).map(|i| m.material(i).albedo);
+        for name in ["red", "red # body", "\"red\"", "red # brick"] {
+            assert_eq!(albedo(name), Some([1.0, 0.0, 0.0]), "{name}");
+        }
+        assert_eq!(albedo("Material #1"), Some([0.0, 1.0, 0.0]));
+        assert_eq!(albedo("Material #2"), Some([0.0, 0.0, 1.0]));
+        assert_eq!(albedo("#fff"), Some(GREY));
+        assert_eq!(albedo("red#2"), None);
+        assert_eq!(m.bad.count, 1, "{}", m.bad.first);
+    }
+
+    #[test]
+    fn marks_line_ends_and_strange_statements_do_not_lose_paint() {
+        let m = read("\u{feff}newmtl a\rKd\t0.5\r\nbump b.png\r\nMap_Kd c.png\nKD 1 1 1\n");
+        assert_eq!(m.material(m.find("a").unwrap()).albedo, [0.5; 3]);
+        assert_eq!((m.maps.count, m.bad.count), (2, 1));
+        assert!(
+            m.bad.first.contains("t.mtl:5: 'KD 1 1 1'"),
+            "{}",
+            m.bad.first
+        );
+        let mut wide = Materials::default();
+        wide.read(b"\xff\xfen\0", "w.mtl");
+        assert!(wide.bad.first.contains("w.mtl: the text is UTF-16"));
     }
 }

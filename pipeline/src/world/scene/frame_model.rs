@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 use super::{Camera, Material, Object, Scene, SceneWarning};
 use crate::world::adjacency::EdgeAdjacency;
+use crate::world::files::Outside;
 use crate::world::light::Light;
 use crate::world::mesh::{Mesh, Shading};
 use crate::world::obj::{self, ObjError};
@@ -21,14 +22,15 @@ const MODEL: Material = Material::glossy([0.72, 0.66, 0.58], 0.2, 24.0);
 const GROUND: Material = Material::matt([0.6, 0.62, 0.65]);
 
 /// Reads an OBJ file and frames it with [`frame_model`]; the scene has the
-/// file's name, and its faces the materials that they use.
+/// file's name, and its faces the materials that they use, of libraries in its
+/// folder or, if allowed, outside.
 ///
 /// # Errors
 /// The file cannot be read or holds no valid mesh.
-pub fn load_and_frame(path: &Path) -> Result<Scene, ObjError> {
-    let read = obj::load(path, Shading::Flat)?;
+pub fn load_and_frame(path: &Path, outside: Outside) -> Result<Scene, ObjError> {
+    let read = obj::load_given(path, outside)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let mut scene = frame_model(&stem, &read.mesh);
+    let mut scene = frame_model(&stem, read.shape);
     for object in scene.objects.iter_mut().filter(|o| o.casts) {
         object.parts.clone_from(&read.parts);
     }
@@ -36,20 +38,18 @@ pub fn load_and_frame(path: &Path) -> Result<Scene, ObjError> {
     Ok(scene)
 }
 
-/// Scales `mesh` to a largest extent of 2, stands it on a ground plane at
+/// Scales `model` to a largest extent of 2, stands it on a ground plane at
 /// y = 0, and sets a light and a camera round it. A mesh that is not closed
 /// stays a caster, with an `open-mesh` warning: a technique may refuse it.
-pub fn frame_model(name: &str, mesh: &Mesh) -> Scene {
-    let (low, high) = mesh.bounds().unwrap_or_default();
+///
+/// # Panics
+/// A coordinate is not finite or beyond f32.
+pub fn frame_model(name: &str, model: Shape) -> Scene {
+    let (low, high) = model.bounds().unwrap_or_default();
     let extent = high - low;
-    let largest = extent.max_element();
-    let scale = if largest > 0.0 {
-        MODEL_SIZE / largest
-    } else {
-        1.0
-    };
+    let scale = scale_of(extent);
     let height = extent.y * scale;
-    let model = placed(mesh, (low + high) / 2.0, low.y, scale);
+    let model = placed(model, (low + high) / 2.0, low.y, scale);
     let warnings = open_warning(&model).into_iter().collect();
     let ground = shape::plane(12.0, 0.0).into_mesh(Shading::Flat);
     let ground = ground.expect("the ground is finite");
@@ -69,15 +69,22 @@ pub fn frame_model(name: &str, mesh: &Mesh) -> Scene {
     scene
 }
 
-/// The mesh with `centre` over the origin and `base` just above the ground,
-/// transformed in f64 and rounded once.
-fn placed(mesh: &Mesh, centre: DVec3, base: f64, scale: f64) -> Mesh {
+/// The factor that makes the largest extent that of a framed model; 1 for models
+/// that are a point, or smaller than a factor can mend.
+fn scale_of(extent: DVec3) -> f64 {
+    let scale = MODEL_SIZE / extent.max_element();
+    if scale.is_finite() { scale } else { 1.0 }
+}
+
+/// The model with `centre` over the origin and `base` just above the ground, in
+/// f64 and rounded once. The offset goes first: what is far from its origin has
+/// digits only for what is left then.
+fn placed(mut model: Shape, centre: DVec3, base: f64, scale: f64) -> Mesh {
     let foot = DVec3::new(centre.x, base, centre.z);
-    let place = DMat4::from_translation(DVec3::Y * LIFT)
-        * DMat4::from_scale(DVec3::splat(scale))
-        * DMat4::from_translation(-foot);
-    let shape = Shape::from_mesh(mesh).transformed(place);
-    let creased = shape.into_mesh(Shading::Crease { degrees: 60.0 });
+    for p in &mut model.positions {
+        *p = (*p - foot) * scale + DVec3::Y * LIFT;
+    }
+    let creased = model.into_mesh(Shading::Crease { degrees: 60.0 });
     creased.expect("the model fits a box of size 2")
 }
 
@@ -105,8 +112,32 @@ fn open_warning(mesh: &Mesh) -> Option<SceneWarning> {
 mod tests {
     use super::*;
 
+    use glam::DMat4;
+
     fn framed(shape: Shape) -> Scene {
-        frame_model("thing", &shape.into_mesh(Shading::Flat).unwrap())
+        frame_model("thing", shape)
+    }
+
+    #[test]
+    fn where_a_model_was_does_not_matter() {
+        let tower = || shape::cylinder(16, 0.5, -3.0, 1.0);
+        let far = DVec3::new(512_345.25, 12.5, 5_432_109.75);
+        let mesh = |scene: &Scene| scene.objects[1].mesh.positions().to_vec();
+        let [here, there] = [DVec3::ZERO, far].map(|d| mesh(&framed(tower().translated(d))));
+        for (a, b) in here.iter().zip(&there) {
+            (0..3).for_each(|k| assert!((a[k] - b[k]).abs() < 1e-8, "{a:?} {b:?}"));
+        }
+    }
+
+    #[test]
+    fn points_and_specks_are_framed_too() {
+        let triangle = |size: f64| Shape {
+            positions: vec![DVec3::ZERO, DVec3::X * size, DVec3::Z * size],
+            triangles: vec![[0, 1, 2]],
+        };
+        for size in [0.0, 1e-320, 1e-300, 3e38] {
+            assert_eq!(framed(triangle(size)).objects.len(), 2, "{size}");
+        }
     }
 
     #[test]

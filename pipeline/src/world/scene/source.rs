@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use super::builtin::{self, BuiltinScene};
 use super::file::{self, Moment};
 use super::{Scene, SceneError, load_and_frame};
+use crate::world::files::Outside;
 use crate::world::scene::environment::{EnvironmentRequest, FittedMaps};
 
 /// Where scenes come from.
@@ -22,25 +23,38 @@ pub struct SceneSource {
 #[derive(Clone, Debug)]
 enum Kind {
     Builtin(&'static BuiltinScene),
-    File { path: PathBuf, text: String },
+    File {
+        path: PathBuf,
+        text: String,
+        outside: Outside,
+    },
     Model(Box<Scene>),
 }
 
 impl SceneSource {
     /// The source called `name`: a `.toml` scene file, an `.obj` model to be
-    /// framed, or else a built-in name.
+    /// framed, or else a built-in name. What the file names must lie in its folder.
     ///
     /// # Errors
     /// The file cannot be read, or there is no built-in scene of that name.
     pub fn open(name: &str) -> Result<Self, SceneError> {
+        Self::open_with(name, Outside::Refused)
+    }
+
+    /// The same; what the file names may lie outside its folder if that is allowed.
+    ///
+    /// # Errors
+    /// As [`SceneSource::open`].
+    pub fn open_with(name: &str, outside: Outside) -> Result<Self, SceneError> {
         let path = Path::new(name);
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         let kind = match extension.to_str() {
             Some("toml") => Kind::File {
                 path: path.to_owned(),
                 text: file::read(path)?,
+                outside,
             },
-            Some("obj") => Kind::Model(Box::new(load_and_frame(path)?)),
+            Some("obj") => Kind::Model(Box::new(load_and_frame(path, outside)?)),
             _ => Kind::Builtin(builtin::find(name)?),
         };
         Ok(Self {
@@ -63,9 +77,14 @@ impl SceneSource {
     /// A scene file or its meshes make no scene, or the environment is wrong.
     pub fn at(&mut self, time: f64) -> Result<Scene, SceneError> {
         let mut scene = match &self.kind {
-            Kind::File { path, text } => {
+            Kind::File {
+                path,
+                text,
+                outside,
+            } => {
                 let mut moment = Moment {
                     time,
+                    outside: *outside,
                     environment: self.environment.as_ref(),
                     maps: &mut self.maps,
                 };

@@ -63,6 +63,13 @@ impl Shape {
         self
     }
 
+    /// Smallest and largest coordinates; `None` for a shape without vertices.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let (first, rest) = self.positions.split_first()?;
+        let around = |(low, high): (DVec3, DVec3), p: &DVec3| (low.min(*p), high.max(*p));
+        Some(rest.iter().fold((*first, *first), around))
+    }
+
     /// Moves by `offset`.
     pub fn translated(mut self, offset: DVec3) -> Self {
         self.positions.iter_mut().for_each(|p| *p += offset);

@@ -12,8 +12,8 @@ use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::environment::PlacedEnvironment;
 use gnomon_pipeline::world::environment::cube::luminance;
+use gnomon_pipeline::world::scene::Scene;
 use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
-use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
 use super::args::CompareArgs;
 use super::job::{self, DEFAULT_SIZE, Entry};
@@ -97,7 +97,7 @@ impl Job {
         let requests: Vec<EnvironmentRequest> = requests.collect();
         let mut scenes = Vec::new();
         for request in &requests {
-            let source = SceneSource::open(&args.scene)?;
+            let source = args.scene.open()?;
             scenes.push(
                 source
                     .with_environment(Some(request.clone()))

@@ -8,7 +8,7 @@
 //! surface, so that the pieces' hard counts add up to the caster's.
 
 use crate::geometry::silhouette::Orientation;
-use crate::world::adjacency::EdgeAdjacency;
+use crate::world::adjacency::{Edge, EdgeAdjacency};
 use crate::world::mesh::{Mesh, Shading};
 
 /// The connected pieces of the triangles that `orientation` counts, ordered by
@@ -21,11 +21,14 @@ pub(super) fn pieces(
     let counted = |t: usize| orientation.of_triangles()[t] != 0;
     let mut roots = Roots::new(mesh.triangles().len());
     for edge in adjacency.edges() {
-        let mut users = edge.uses.iter().map(|u| u.triangle as usize);
-        if let Some(first) = users.by_ref().find(|t| counted(*t)) {
-            users
-                .filter(|t| counted(*t))
-                .for_each(|t| roots.unite(first, t));
+        if edge.uses.len() > 2 {
+            across(&edge, orientation).for_each(|[a, b]| roots.unite(a, b));
+        } else if let [a, b] = edge.uses
+            && let [a, b] = [a.triangle as usize, b.triangle as usize]
+            && counted(a)
+            && counted(b)
+        {
+            roots.unite(a, b);
         }
     }
     let mut triangles_of = vec![Vec::new(); mesh.triangles().len()];
@@ -36,6 +39,22 @@ pub(super) fn pieces(
     pieces
         .filter_map(|triangles| compact(mesh, triangles))
         .collect()
+}
+
+/// Pairs of triangles that continue each other across an edge of many: one that
+/// walks it up and one that walks it down, as they are counted. What has no partner
+/// ends there; what walks the same way lies in front of or behind the other, and
+/// hides as a piece of its own.
+fn across(edge: &Edge<'_>, orientation: &Orientation) -> impl Iterator<Item = [usize; 2]> {
+    let walking = |way: i8| {
+        let uses = edge.uses.iter();
+        uses.filter_map(move |u| {
+            let walk = if u.ascending { 1 } else { -1 };
+            let t = u.triangle as usize;
+            (walk * orientation.of_triangles()[t] == way).then_some(t)
+        })
+    };
+    walking(1).zip(walking(-1)).map(|(up, down)| [up, down])
 }
 
 /// The triangles with only the positions that they use.

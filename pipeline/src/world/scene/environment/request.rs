@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::place;
 use crate::world::environment::{Environment, EnvironmentError, Fit, FitSettings, MapSettings};
+use crate::world::files::SceneFolder;
 use crate::world::scene::Scene;
 
 /// A map by name, and how to make lights of it.
@@ -12,6 +13,8 @@ use crate::world::scene::Scene;
 pub struct EnvironmentRequest {
     /// As [`Environment::open`] takes it.
     pub map: String,
+    /// The folder that the map must lie in, where a scene names it.
+    pub folder: Option<SceneFolder>,
     /// How to read it.
     pub settings: MapSettings,
     /// How to fit it.
@@ -23,6 +26,7 @@ impl EnvironmentRequest {
     pub fn new(map: impl Into<String>) -> Self {
         Self {
             map: map.into(),
+            folder: None,
             settings: MapSettings::default(),
             fit: FitSettings::default(),
         }
@@ -38,7 +42,7 @@ impl EnvironmentRequest {
         let fitted = match found {
             Some((_, fitted)) => fitted.clone(),
             None => {
-                let map = Environment::open(&self.map, self.settings)?;
+                let map = Environment::open_from(&self.map, self.folder.as_ref(), self.settings)?;
                 let fit = map.fit(&self.fit)?;
                 let fitted = Arc::new((map, fit));
                 known.0.push((self.clone(), fitted.clone()));

@@ -1,7 +1,5 @@
 //! From the tables of a scene file to a [`Scene`].
 
-use std::path::Path;
-
 use glam::{DMat4, DVec3};
 
 use super::check::Source;
@@ -10,6 +8,7 @@ use super::schema::{
     CameraTable, LightShapeTable, LightTable, MaterialTable, ObjectTable, SceneTable,
 };
 use super::{Moment, SceneFileError, environment, shapes};
+use crate::world::files::SceneFolder;
 use crate::world::light::{ConvexPolygon, Light, LightShape};
 use crate::world::mesh::Shading;
 use crate::world::scene::{Camera, Material, Object, Scene, SceneWarning};
@@ -25,7 +24,7 @@ const CREASE: f64 = 40.0;
 
 pub(super) fn scene(
     source: &Source<'_>,
-    folder: &Path,
+    folder: &SceneFolder,
     table: SceneTable,
     moment: &mut Moment<'_>,
 ) -> Built<Scene> {
@@ -55,7 +54,7 @@ pub(super) fn scene(
 /// The environment that the moment asks for, or else the file's own.
 fn light_by_environment(
     source: &Source<'_>,
-    folder: &Path,
+    folder: &SceneFolder,
     table: &SceneTable,
     moment: &mut Moment<'_>,
     scene: &mut Scene,
@@ -92,11 +91,11 @@ fn size(source: &Source<'_>, table: &SceneTable) -> Built<Option<[u32; 2]>> {
         return Ok(None);
     };
     if size.get_ref().iter().all(|s| (1..=MAX_SIDE).contains(s)) {
-        return Ok(Some(*size.get_ref()));
+        return Ok(Some(size.get_ref().0));
     }
     let message = format!(
         "size is {:?}; valid is [width, height], each 1..={MAX_SIDE}",
-        size.get_ref()
+        size.get_ref().0
     );
     Err(source.error(size.span(), message))
 }
@@ -158,7 +157,7 @@ fn light_shape(source: &Source<'_>, table: &LightShapeTable) -> Built<LightShape
             edge_v: source.direction("edge-v", edge_v)?,
         },
         LightShapeTable::Polygon { vertices } => {
-            let points = vertices.get_ref().iter().copied().map(DVec3::from);
+            let points = vertices.get_ref().iter().map(|v| DVec3::from(v.0));
             let polygon = ConvexPolygon::new(points.collect::<Vec<_>>());
             let located = |e| source.error(vertices.span(), format!("vertices: {e}"));
             LightShape::Polygon(polygon.map_err(located)?)
@@ -187,7 +186,7 @@ fn light_shape(source: &Source<'_>, table: &LightShapeTable) -> Built<LightShape
 
 fn object(
     source: &Source<'_>,
-    folder: &Path,
+    folder: &SceneFolder,
     index: usize,
     table: &ObjectTable,
     time: f64,
@@ -294,9 +293,9 @@ fn material(source: &Source<'_>, table: Option<&MaterialTable>) -> Built<Materia
         material.specular = source.colour("specular", specular)?;
     }
     if let Some(shininess) = &table.shininess {
-        let rule = "at least 1 (Phong exponent)";
-        material.shininess =
-            source.number_where("shininess", shininess, rule, |x| x >= 1.0)? as f32;
+        let rule = "1 to 3.4e38 (Phong exponent)";
+        let valid = |x: f64| (1.0..=f64::from(f32::MAX)).contains(&x);
+        material.shininess = source.number_where("shininess", shininess, rule, valid)? as f32;
     }
     Ok(material)
 }

@@ -30,13 +30,13 @@ impl Source<'_> {
 
     /// Three finite numbers.
     pub(super) fn finite(&self, name: &str, value: &Triple) -> Checked<DVec3> {
-        let v = DVec3::from(*value.get_ref());
+        let v = DVec3::from(value.get_ref().0);
         if v.is_finite() {
             return Ok(v);
         }
         let message = format!(
             "{name} is {:?}; valid are three finite numbers",
-            value.get_ref()
+            value.get_ref().0
         );
         Err(self.error(value.span(), message))
     }
@@ -51,13 +51,13 @@ impl Source<'_> {
         Err(self.error(value.span(), message))
     }
 
-    /// Linear RGB: finite and not negative.
+    /// Linear RGB: not negative, and finite in f32.
     pub(super) fn colour(&self, name: &str, value: &Triple) -> Checked<[f32; 3]> {
         let rgb = self.finite(name, value)?.to_array();
-        if rgb.iter().all(|c| *c >= 0.0) {
+        if rgb.iter().all(|c| (0.0..=f64::from(f32::MAX)).contains(c)) {
             return Ok(rgb.map(|c| c as f32));
         }
-        let message = format!("{name} is {rgb:?}; valid are three numbers of at least 0");
+        let message = format!("{name} is {rgb:?}; valid are three numbers from 0 to 3.4e38");
         Err(self.error(value.span(), message))
     }
 

@@ -1,17 +1,16 @@
 //! The environment of a scene file.
 
-use std::path::Path;
-
 use super::SceneFileError;
 use super::check::Source;
 use super::schema::{EnvironmentTable, FormTable, ResidualTable};
 use crate::world::environment::{FitSettings, LightForm, MapSettings, ResidualRule, SKY};
+use crate::world::files::SceneFolder;
 use crate::world::scene::environment::EnvironmentRequest;
 
 /// What `table` asks for; values out of range are refused when it is met.
 pub(super) fn request(
     source: &Source<'_>,
-    folder: &Path,
+    folder: &SceneFolder,
     table: &EnvironmentTable,
 ) -> Result<EnvironmentRequest, SceneFileError> {
     let (map, fit) = (MapSettings::default(), FitSettings::default());
@@ -29,6 +28,7 @@ pub(super) fn request(
         } else {
             folder.join(name).display().to_string()
         },
+        folder: Some(folder.clone()),
         settings: MapSettings {
             side: count(&table.side, map.side),
             turn: number("turn", &table.turn, map.turn)?,

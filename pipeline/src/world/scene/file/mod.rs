@@ -63,6 +63,7 @@
 //! Unknown keys are errors; every error names file, line and column and says
 //! what would be valid.
 
+mod array;
 mod build;
 mod check;
 mod environment;
@@ -75,18 +76,30 @@ use std::path::Path;
 use thiserror::Error;
 
 use super::Scene;
+use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::scene::environment::{EnvironmentRequest, FittedMaps};
+
+/// Bytes of a scene file that are read at most.
+pub const MAX_SCENE_BYTES: u64 = 16 << 20;
 
 /// Why a scene file could not be used.
 #[derive(Debug, Error)]
 pub enum SceneFileError {
     /// The file could not be read.
-    #[error("{file}: cannot be read: {source}")]
+    #[error("{file}: {source}")]
     Unreadable {
         /// File as given.
         file: String,
-        /// What the system says.
-        source: std::io::Error,
+        /// Why not.
+        source: FileError,
+    },
+    /// The bytes are no text.
+    #[error("{file}: not UTF-8 (byte {at} is the first that is not); save it as UTF-8")]
+    NotText {
+        /// File as given.
+        file: String,
+        /// The first byte that is not, from 0.
+        at: usize,
     },
     /// The text is not a valid scene.
     #[error("{file}:{line}:{column}: {message}")]
@@ -107,6 +120,8 @@ pub enum SceneFileError {
 pub struct Moment<'a> {
     /// Seconds.
     pub time: f64,
+    /// Whether files that the scene names may lie outside its folder.
+    pub outside: Outside,
     /// Takes the place of the file's own lights and environment.
     pub environment: Option<&'a EnvironmentRequest>,
     /// Maps that were read before; those of this scene are added.
@@ -121,6 +136,7 @@ pub struct Moment<'a> {
 pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
     let mut moment = Moment {
         time: 0.0,
+        outside: Outside::Refused,
         environment: None,
         maps: &mut FittedMaps::default(),
     };
@@ -129,9 +145,15 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
 
 /// The text of a scene file.
 pub(super) fn read(path: &Path) -> Result<String, SceneFileError> {
-    std::fs::read_to_string(path).map_err(|source| SceneFileError::Unreadable {
-        file: path.display().to_string(),
+    let file = || path.display().to_string();
+    let read = files::read(path, MAX_SCENE_BYTES);
+    let bytes = read.map_err(|source| SceneFileError::Unreadable {
+        file: file(),
         source,
+    })?;
+    String::from_utf8(bytes).map_err(|e| SceneFileError::NotText {
+        file: file(),
+        at: e.utf8_error().valid_up_to(),
     })
 }
 
@@ -160,6 +182,7 @@ pub(super) fn named(
 pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Scene, SceneFileError> {
     let mut moment = Moment {
         time: 0.0,
+        outside: Outside::Refused,
         environment: None,
         maps: &mut FittedMaps::default(),
     };
@@ -176,12 +199,15 @@ pub fn parse_at(
     folder: &Path,
     moment: &mut Moment<'_>,
 ) -> Result<Scene, SceneFileError> {
+    // A byte order mark is no part of the text.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let source = check::Source { text, file };
     let table: schema::SceneTable = toml::from_str(text).map_err(|e| {
         let span = e.span().unwrap_or(0..0);
         source.error(span, e.message().to_owned())
     })?;
-    build::scene(&source, folder, table, moment)
+    let folder = SceneFolder::new(folder, moment.outside);
+    build::scene(&source, &folder, table, moment)
 }
 
 #[cfg(test)]
@@ -256,6 +282,7 @@ shape.point = { position = [1, 4, 1] }
     fn at(text: &str, time: f64) -> Result<Scene, SceneFileError> {
         let mut moment = Moment {
             time,
+            outside: Outside::Refused,
             environment: None,
             maps: &mut FittedMaps::default(),
         };

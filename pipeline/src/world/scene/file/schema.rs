@@ -3,11 +3,14 @@
 
 use std::fmt;
 
+use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 use toml::Spanned;
 
+use super::array::Array;
+
 pub(super) type Number = Spanned<f64>;
-pub(super) type Triple = Spanned<[f64; 3]>;
+pub(super) type Triple = Spanned<Array<f64, 3>>;
 pub(super) type Count = Spanned<u32>;
 
 #[derive(serde::Deserialize)]
@@ -15,7 +18,7 @@ pub(super) type Count = Spanned<u32>;
 pub(super) struct SceneTable {
     #[serde(default)]
     pub(super) name: String,
-    pub(super) size: Option<Spanned<[u32; 2]>>,
+    pub(super) size: Option<Spanned<Array<u32, 2>>>,
     pub(super) ambient: Option<Triple>,
     pub(super) background: Option<Triple>,
     pub(super) camera: CameraTable,
@@ -60,7 +63,7 @@ pub(super) enum LightShapeTable {
         edge_v: Triple,
     },
     Polygon {
-        vertices: Spanned<Vec<[f64; 3]>>,
+        vertices: Spanned<Vec<Array<f64, 3>>>,
     },
     Disc {
         centre: Triple,
@@ -238,15 +241,8 @@ impl<'de> Visitor<'de> for ScaleVisitor {
         Ok(Scale([factor as f64; 3]))
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Scale, A::Error> {
-        let mut factors = [0.0; 3];
-        for (k, factor) in factors.iter_mut().enumerate() {
-            let next = seq.next_element()?;
-            *factor = next.ok_or_else(|| serde::de::Error::invalid_length(k, &self))?;
-        }
-        match seq.next_element::<f64>()? {
-            Some(_) => Err(serde::de::Error::invalid_length(4, &self)),
-            None => Ok(Scale(factors)),
-        }
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Scale, A::Error> {
+        let factors = Array::deserialize(SeqAccessDeserializer::new(seq))?;
+        Ok(Scale(factors.0))
     }
 }

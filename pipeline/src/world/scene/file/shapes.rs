@@ -1,11 +1,9 @@
 //! Meshes of a scene file: built-in primitives and OBJ files.
 
-use std::path::Path;
-
 use super::SceneFileError;
 use super::check::Source;
 use super::schema::MeshTable;
-use crate::world::mesh::Shading;
+use crate::world::files::SceneFolder;
 use crate::world::obj;
 use crate::world::scene::{MaterialPart, SceneWarning};
 use crate::world::shape::{self, Shape, Terrain};
@@ -24,16 +22,16 @@ pub(super) struct Read {
 /// The shape that a table asks for at `time`, in seconds.
 pub(super) fn shape(
     source: &Source<'_>,
-    folder: &Path,
+    folder: &SceneFolder,
     table: &MeshTable,
     time: f64,
 ) -> Result<Read, SceneFileError> {
     match table {
         MeshTable::Obj(path) => {
-            let read = obj::load(&folder.join(path.get_ref()), Shading::Flat)
+            let read = obj::load_from(&folder.join(path.get_ref()), folder)
                 .map_err(|e| source.error(path.span(), e.to_string()))?;
             Ok(Read {
-                shape: Shape::from_mesh(&read.mesh),
+                shape: read.shape,
                 parts: read.parts,
                 warnings: read.warnings,
             })

@@ -1,0 +1,27 @@
+//! Which scene.
+
+use clap::Args;
+use gnomon_pipeline::world::files::Outside;
+use gnomon_pipeline::world::scene::{SceneError, SceneSource};
+
+/// What to draw.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// Built-in scene (see `gnomon scenes`), .toml scene file or .obj model
+    pub(crate) scene: String,
+    /// Read files outside the scene's folder too, where the scene names them
+    #[arg(long)]
+    allow_outside: bool,
+}
+
+impl SceneArgs {
+    /// The scene, open.
+    pub(crate) fn open(&self) -> Result<SceneSource, SceneError> {
+        let outside = if self.allow_outside {
+            Outside::Allowed
+        } else {
+            Outside::Refused
+        };
+        SceneSource::open_with(&self.scene, outside)
+    }
+}

@@ -5,8 +5,6 @@
 //! asks for the generalised silhouette, which is right for any mesh at about
 //! twice the fill.
 
-use std::str::FromStr;
-
 use thiserror::Error;
 
 use crate::geometry::volume::ShadowVolume;
@@ -31,25 +29,8 @@ impl CasterPolicy {
     pub const NAMES: [&str; 2] = ["refuse", "generalised"];
 
     /// The parameter value that selects this policy.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         Self::NAMES[self as usize]
-    }
-}
-
-/// A value of `open-casters` that is not one of [`CasterPolicy::NAMES`].
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("open-casters is '{0}'; valid are: {names}", names = CasterPolicy::NAMES.join(", "))]
-pub struct UnknownPolicy(pub String);
-
-impl FromStr for CasterPolicy {
-    type Err = UnknownPolicy;
-
-    fn from_str(value: &str) -> Result<Self, UnknownPolicy> {
-        match value {
-            "refuse" => Ok(Self::RequireClosed),
-            "generalised" => Ok(Self::Generalised),
-            other => Err(UnknownPolicy(other.to_owned())),
-        }
     }
 }
 
@@ -198,13 +179,5 @@ mod tests {
         let volume = caster.volume(&room, light);
         assert_eq!(volume_winding(&volume, DVec3::new(1.0, -1.0, 0.5)), 0);
         assert_eq!(volume_winding(&volume, DVec3::new(5.0, -1.0, 0.5)), 1);
-    }
-
-    #[test]
-    fn policies_parse_by_name() {
-        for policy in [CasterPolicy::RequireClosed, CasterPolicy::Generalised] {
-            assert_eq!(policy.name().parse(), Ok(policy));
-        }
-        assert!("open".parse::<CasterPolicy>().is_err());
     }
 }

@@ -13,7 +13,7 @@ impl Choice for CasterPolicy {
 
 pub(crate) const OPEN_CASTERS: Param<CasterPolicy> = Param::choice(
     "open-casters",
-    "refuse",
+    CasterPolicy::RequireClosed.name(),
     "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
 );
 

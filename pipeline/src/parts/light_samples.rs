@@ -14,10 +14,8 @@
 //! section.
 
 use std::f64::consts::TAU;
-use std::str::FromStr;
 
 use glam::DVec3;
-use thiserror::Error;
 
 use crate::technique::Choice;
 use crate::truth::oracle::area::emitter::Emitter;
@@ -70,21 +68,6 @@ impl Pattern {
 impl Choice for Pattern {
     const NAMES: &'static [&'static str] = &Pattern::NAMES;
     const ALL: &'static [Self] = &[Self::Grid, Self::Stratified, Self::RotatedGrid];
-}
-
-/// A pattern that there is not.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("no pattern is called '{0}'; valid are: {names}", names = Pattern::NAMES.join(", "))]
-pub struct UnknownPattern(pub String);
-
-impl FromStr for Pattern {
-    type Err = UnknownPattern;
-
-    fn from_str(name: &str) -> Result<Self, UnknownPattern> {
-        let all = [Self::Grid, Self::Stratified, Self::RotatedGrid];
-        let found = all.into_iter().find(|p| p.name() == name);
-        found.ok_or_else(|| UnknownPattern(name.to_owned()))
-    }
 }
 
 /// `side * side` points of `light`, world space, row by row; a light without
@@ -298,10 +281,12 @@ mod tests {
 
     #[test]
     fn patterns_have_names() {
-        for pattern in PATTERNS {
-            assert_eq!(pattern.name().parse(), Ok(pattern));
+        for (pattern, name) in PATTERNS.into_iter().zip(Pattern::NAMES) {
+            assert_eq!(
+                <Pattern as crate::technique::Setting>::read(name),
+                Some(pattern)
+            );
+            assert_eq!(pattern.name(), name);
         }
-        let message = "spiral".parse::<Pattern>().unwrap_err().to_string();
-        assert!(message.contains("rotated-grid"), "{message}");
     }
 }

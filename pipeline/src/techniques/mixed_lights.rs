@@ -104,6 +104,26 @@ impl MixedSettings {
         others.retain(|l| !chosen.contains(l));
         Ok((chosen, others))
     }
+
+    /// Warnings of a technique that was asked for and has no lights, and of `skip` where
+    /// no technique that draws can skip.
+    fn unused(&self, params: &Params, bright: &[usize], others: &[usize]) -> Vec<Warning> {
+        let idle = |param: &Param<Nested>, lights: &[usize]| {
+            let warning = params.in_vain(param.info.name, "it has no lights left to draw");
+            warning.filter(|_| lights.is_empty())
+        };
+        let skips = |inner: &Inner, lights: &[usize]| {
+            !lights.is_empty() && inner.params.text(SKIP.info.name).is_some()
+        };
+        let can_skip = skips(&self.first, bright) || skips(&self.rest, others);
+        let skip = params.in_vain(SKIP.info.name, "no technique that draws can leave work out");
+        let all = [
+            idle(&FIRST, bright),
+            idle(&REST, others),
+            skip.filter(|_| !can_skip),
+        ];
+        all.into_iter().flatten().collect()
+    }
 }
 
 impl Technique for MixedLights {
@@ -159,19 +179,11 @@ impl Technique for MixedLights {
                 joined(frame, rest.frame(&dark, others, size)?)
             }
         };
-        frame.warnings.extend(unused(params, &bright, &others));
+        frame
+            .warnings
+            .extend(settings.unused(params, &bright, &others));
         Ok(frame)
     }
-}
-
-/// Warnings of a technique that was asked for and has no lights.
-fn unused(params: &Params, bright: &[usize], others: &[usize]) -> Vec<Warning> {
-    let none = |param: &Param<Nested>, lights: &[usize]| {
-        let warning = params.in_vain(param.info.name, "it has no lights left to draw");
-        warning.filter(|_| lights.is_empty())
-    };
-    let both = [none(&FIRST, bright), none(&REST, others)];
-    both.into_iter().flatten().collect()
 }
 
 /// A technique and its settings.

@@ -1,8 +1,6 @@
 //! Models, materials, maps and scenes as other programs write them: what users
 //! bring is read as they mean it, or refused with its place.
 
-mod common;
-#[path = "wild/edges.rs"]
 mod edges;
 #[path = "wild/maps.rs"]
 mod maps;
@@ -17,7 +15,7 @@ mod scenes;
 
 use std::path::{Path, PathBuf};
 
-use common::Folder;
+use crate::common::Folder;
 use serde_json::Value;
 
 /// The files that lie beside these tests.

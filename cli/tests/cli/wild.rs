@@ -2,15 +2,10 @@
 //! bring is read as they mean it, or refused with its place.
 
 mod edges;
-#[path = "wild/maps.rs"]
 mod maps;
-#[path = "wild/models.rs"]
 mod models;
-#[path = "wild/paint.rs"]
 mod paint;
-#[path = "wild/reach.rs"]
 mod reach;
-#[path = "wild/scenes.rs"]
 mod scenes;
 
 use std::path::{Path, PathBuf};

@@ -110,7 +110,8 @@ fn projector(shape: &LightShape) -> (Projector, [DVec3; 3]) {
     let flat = |image, size: f64| {
         let rows = [rows[0] / size, rows[1] / size, rows[2]];
         let light = FlatLight {
-            centre: [0.0; 3],
+            origin: [0.0; 3],
+            far: None,
             axes: rows.map(narrow),
             image,
         };
@@ -121,7 +122,8 @@ fn projector(shape: &LightShape) -> (Projector, [DVec3; 3]) {
         LightShape::Disc { radius, .. } => flat(Image::Disc, radius),
         LightShape::Sphere { radius, .. } => {
             let light = SphereLight {
-                centre: [0.0; 3],
+                origin: [0.0; 3],
+                far: None,
                 radius: radius as f32,
                 seen: true,
             };
@@ -180,7 +182,7 @@ fn lanes_agree_with_the_twin() {
                 light,
                 covering: ExactCoverage,
                 edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
-                plane: HardPlane(narrow(normal)),
+                plane: HardPlane::through_centre(narrow(normal)),
                 to: CoverTo::Visibility,
             };
             let draw = full_screen(shader.stage(), ColorTargetState::OPAQUE, &[positions; 2]);
@@ -274,7 +276,7 @@ fn a_convex_occluder_hides_in_lanes_what_it_hides_in_f64() {
                     light,
                     covering: ExactCoverage,
                     edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
-                    plane: HardPlane(narrow(normals[k])),
+                    plane: HardPlane::through_centre(narrow(normals[k])),
                     to: CoverTo::Visibility,
                 };
                 full_screen(shader.stage(), ColorTargetState::ADDITIVE, &[positions; 2])
@@ -310,10 +312,14 @@ fn count_everywhere(normal: DVec3, positions: TextureId) -> Draw {
     let identity = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|k| if i == k { 1.0 } else { 0.0 }));
     let pipeline = RenderPipeline {
         label: "count".into(),
-        vertex: HardQuads(ClipFromWorld(identity)).stage(),
+        vertex: HardQuads {
+            clip_from_world: ClipFromWorld(identity),
+            offsets: false,
+        }
+        .stage(),
         fragment: Some(
             HardCount {
-                centre: [0.0; 3],
+                origin: [0.0; 3],
                 to: CountTo::Visibility,
             }
             .stage(),
@@ -374,7 +380,7 @@ fn count_and_sign_agree_next_to_the_plane() {
                 light,
                 covering: ExactCoverage,
                 edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
-                plane: HardPlane(narrow(plane)),
+                plane: HardPlane::through_centre(narrow(plane)),
                 to: CoverTo::Visibility,
             };
             let out = texture(&mut gpu, Format::R32Float);
@@ -416,7 +422,7 @@ fn split_coverage_stays_in_range_next_to_the_plane() {
             let shader = SplitPenumbra {
                 light,
                 edge: ends.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
-                plane: HardPlane(narrow(plane)),
+                plane: HardPlane::through_centre(narrow(plane)),
                 tables: Tables::default(),
                 halves,
             };
@@ -472,7 +478,7 @@ fn pieces_of_an_edge_cover_what_it_does() {
                 light,
                 covering: ExactCoverage,
                 edge: piece.map(|e| narrow(DVec3::from_array(rows.map(|r| r.dot(e))))),
-                plane: HardPlane(narrow(normal)),
+                plane: HardPlane::through_centre(narrow(normal)),
                 to: CoverTo::Visibility,
             };
             full_screen(shader.stage(), ColorTargetState::ADDITIVE, &[positions; 2])

@@ -49,35 +49,49 @@ pub(crate) fn texel_of<L: Lanes>(
     )
 }
 
-/// A position relative to `centre`, and whether shadow may fall on it.
+/// A position relative to `origin`, and whether shadow may fall on it.
 #[inline(always)]
 pub(crate) fn receiver<L: Lanes>(
     l: L,
     texel: [F32<L>; 4],
-    centre: [f32; 3],
+    origin: [f32; 3],
 ) -> ([F32<L>; 3], Mask<L>) {
     let from = each3(
         #[inline(always)]
-        |i| texel[i] - centre[i],
+        |i| texel[i] - origin[i],
     );
     (from, texel[3].gt(F32::splat(l, 0.0)))
 }
 
-/// Normal of the plane through the light's centre and an edge, out of the umbra.
+/// The plane through the light's centre and an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HardPlane(pub [f32; 3]);
-uniforms!(HardPlane(normal));
+pub struct HardPlane {
+    /// Out of the umbra.
+    pub normal: [f32; 3],
+    /// The plane's value at [`Projector::origin`]: 0 where that is the centre.
+    pub offset: f32,
+}
+uniforms!(HardPlane { normal, offset });
 
 impl HardPlane {
-    /// Whether positions relative to the light's centre are on the umbra side.
+    /// For positions relative to the light's centre.
+    pub fn through_centre(normal: [f32; 3]) -> Self {
+        Self {
+            normal,
+            offset: 0.0,
+        }
+    }
+
+    /// Whether positions relative to the light's origin are on the umbra side.
     #[inline(always)]
     pub fn umbra_side<L: Lanes>(&self, l: L, from: [F32<L>; 3]) -> Mask<L> {
         umbra_side(
             l,
             each3(
                 #[inline(always)]
-                |i| F32::splat(l, self.0[i]),
+                |i| F32::splat(l, self.normal[i]),
             ),
+            F32::splat(l, self.offset),
             from,
         )
     }
@@ -85,23 +99,32 @@ impl HardPlane {
 
 /// The one predicate: on the plane counts as outside.
 #[inline(always)]
-fn umbra_side<L: Lanes>(l: L, normal: [F32<L>; 3], from: [F32<L>; 3]) -> Mask<L> {
-    dot3(normal, from).lt(F32::splat(l, 0.0))
+fn umbra_side<L: Lanes>(l: L, normal: [F32<L>; 3], offset: F32<L>, from: [F32<L>; 3]) -> Mask<L> {
+    (dot3(normal, from) + offset).lt(F32::splat(l, 0.0))
 }
 
-/// Attributes: homogeneous position, normal of the quad's [`HardPlane`], and 1
-/// where the eye is on its umbra side, else 0. Four flat varyings.
+/// Attributes: homogeneous position, normal of the quad's [`HardPlane`], 1 where the
+/// eye is on its umbra side, else 0, and its offset where there are `offsets`. Five
+/// flat varyings.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HardQuads(pub ClipFromWorld);
-uniforms!(HardQuads(clip_from_world));
+pub struct HardQuads {
+    /// The view.
+    pub clip_from_world: ClipFromWorld,
+    /// Whether planes have an offset, attribute 8; else it is 0.
+    pub offsets: bool,
+}
+uniforms!(HardQuads {
+    clip_from_world,
+    offsets
+});
 
 impl VertexShader for HardQuads {
     fn varyings(&self) -> &[Interpolation] {
-        &[Interpolation::Flat; 4]
+        &[Interpolation::Flat; 5]
     }
 
     #[inline(always)]
-    fn shade<L: Lanes>(&self, _: L, v: &mut Vertex<'_, L>) {
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
         let position = each4(
             #[inline(always)]
             |i| v.attribute(i),
@@ -110,7 +133,13 @@ impl VertexShader for HardQuads {
             let flat = v.attribute(4 + i);
             v.set_varying(i, flat);
         }
-        v.set_position(self.0.apply(position));
+        let offset = if self.offsets {
+            v.attribute(8)
+        } else {
+            F32::splat(l, 0.0)
+        };
+        v.set_varying(4, offset);
+        v.set_position(self.clip_from_world.apply(position));
     }
 }
 
@@ -129,12 +158,12 @@ uniforms!(enum CountTo { 0: Visibility, 1: Alpha });
 /// wherever the eye is, once the eye's own count is taken off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HardCount {
-    /// The light's centre, relative to the origin of positions.
-    pub centre: [f32; 3],
+    /// The light's origin, as [`Projector::origin`].
+    pub origin: [f32; 3],
     /// Where the count goes.
     pub to: CountTo,
 }
-uniforms!(HardCount { centre, to });
+uniforms!(HardCount { origin, to });
 
 impl FragmentShader for HardCount {
     fn outputs(&self) -> FragmentOutputs {
@@ -144,13 +173,13 @@ impl FragmentShader for HardCount {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let [position] = own_texels(l, f, 1);
-        let (from, shadowable) = receiver(l, position, self.centre);
+        let (from, shadowable) = receiver(l, position, self.origin);
         let normal = each3(
             #[inline(always)]
             |i| f.varying(i),
         );
         let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
-        let inside = umbra_side(l, normal, from).select_f32(one, zero);
+        let inside = umbra_side(l, normal, f.varying(4), from).select_f32(one, zero);
         let entered = shadowable.select_f32(inside - f.varying(3), zero);
         match self.to {
             CountTo::Visibility => {
@@ -175,7 +204,7 @@ uniforms!(EyeCount(count));
 
 impl VertexShader for EyeCount {
     fn varyings(&self) -> &[Interpolation] {
-        &[Interpolation::Flat; 4]
+        &[Interpolation::Flat; 5]
     }
 
     #[inline(always)]
@@ -186,6 +215,7 @@ impl VertexShader for EyeCount {
             v.set_varying(i, zero); // a normal of which nothing is on the umbra side
         }
         v.set_varying(3, F32::splat(l, -self.0));
+        v.set_varying(4, zero);
     }
 }
 
@@ -283,7 +313,7 @@ impl<C: Covering> FragmentShader for Penumbra<C> {
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let count = if self.to == CoverTo::Copied { 2 } else { 1 };
         let [position, before] = own_texels(l, f, count);
-        let (from, shadowable) = receiver(l, position, self.light.centre());
+        let (from, shadowable) = receiver(l, position, self.light.origin());
         let zero = F32::splat(l, 0.0);
         let projected = self.light.project(l, from, &self.edge);
         let mut segment = clip(l, self.light.image(), &projected);

@@ -86,7 +86,7 @@ impl FragmentShader for SplitPenumbra {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let [position] = own_texels(l, f, 1);
-        let (from, shadowable) = receiver(l, position, self.light.centre());
+        let (from, shadowable) = receiver(l, position, self.light.origin());
         let projected = self.light.project(l, from, &self.edge);
         let mut segment = clip(l, self.light.image(), &projected);
         segment.some = segment.some & shadowable;

@@ -7,7 +7,8 @@
 
 use std::ops::Range;
 
-use crate::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use crate::geometry::silhouette::{Orientation, Silhouette};
+use crate::geometry::slivers::{Slivers, facing};
 use crate::world::adjacency::EdgeAdjacency;
 use crate::world::light::HardLight;
 use crate::world::mesh::{Mesh, narrow};
@@ -22,6 +23,8 @@ pub struct ShadowVolume {
     light_cap: Range<usize>,
     dark_cap: Range<usize>,
     sides: Range<usize>,
+    /// Whether each silhouette edge has two side triangles; else it has one.
+    quads: bool,
     max_multiplicity: u32,
 }
 
@@ -35,7 +38,7 @@ impl ShadowVolume {
     /// [`crate::geometry::winding::mesh_winding`] to find out); use
     /// [`ShadowVolume::generalised`] then.
     pub fn of_closed(mesh: &Mesh, adjacency: &EdgeAdjacency, light: HardLight) -> Self {
-        let facing = light_facing(mesh, light);
+        let facing = facing(mesh, adjacency, light, Slivers::WithoutArea);
         let orientation = Orientation::closed(&facing);
         let light_cap = select(mesh, &facing, true);
         // The far end may be closed by the non-facing triangles as well as by
@@ -49,14 +52,10 @@ impl ShadowVolume {
     /// point's winding number is the number of triangles between it and the
     /// light, whichever way they face.
     pub fn generalised(mesh: &Mesh, adjacency: &EdgeAdjacency, light: HardLight) -> Self {
-        let facing = light_facing(mesh, light);
+        let facing = facing(mesh, adjacency, light, Slivers::WithoutArea);
         let orientation = Orientation::generalised(&facing);
-        let turned = |wanted| {
-            let pairs = mesh.triangles().iter().zip(&facing);
-            pairs.map(move |(t, &f)| if f == wanted { *t } else { reversed(*t) })
-        };
-        let light_cap = turned(true).collect();
-        let dark_cap = turned(false).collect();
+        let light_cap = turned(mesh, &facing, true);
+        let dark_cap = turned(mesh, &facing, false);
         Self::assemble(mesh, adjacency, light, &orientation, light_cap, dark_cap)
     }
 
@@ -92,6 +91,7 @@ impl ShadowVolume {
             light_cap,
             dark_cap,
             sides,
+            quads: !light.is_directional(),
             max_multiplicity: silhouette.max_multiplicity,
         }
     }
@@ -132,6 +132,18 @@ impl ShadowVolume {
         ]
     }
 
+    /// The silhouette edges by their ends, world space, the occluder on the left seen
+    /// from the light; an edge of multiplicity k comes k times.
+    pub fn silhouette(&self) -> impl Iterator<Item = [glam::DVec3; 2]> {
+        let step = usize::from(self.quads) + 1;
+        self.sides().iter().step_by(step).map(|&[b, a, _]| {
+            [a, b].map(|i| {
+                let [x, y, z, _] = self.positions[i as usize].map(f64::from);
+                glam::DVec3::new(x, y, z)
+            })
+        })
+    }
+
     /// Largest multiplicity of a silhouette edge; above 255 an 8-bit stencil
     /// must wrap to survive.
     pub fn max_multiplicity(&self) -> u32 {
@@ -139,12 +151,20 @@ impl ShadowVolume {
     }
 }
 
-fn select(mesh: &Mesh, facing: &[bool], wanted: bool) -> Vec<[u32; 3]> {
+/// The triangles that face, or do not.
+pub(crate) fn select(mesh: &Mesh, facing: &[bool], wanted: bool) -> Vec<[u32; 3]> {
     let pairs = mesh.triangles().iter().zip(facing);
     pairs
         .filter(|(_, f)| **f == wanted)
         .map(|(t, _)| *t)
         .collect()
+}
+
+/// All triangles, each turned to face, or not to.
+pub(crate) fn turned(mesh: &Mesh, facing: &[bool], wanted: bool) -> Vec<[u32; 3]> {
+    let pairs = mesh.triangles().iter().zip(facing);
+    let turned = pairs.map(|(t, &f)| if f == wanted { *t } else { reversed(*t) });
+    turned.collect()
 }
 
 /// Keeps the first corner, which anchors a triangle's depth plane.

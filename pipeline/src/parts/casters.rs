@@ -1,7 +1,8 @@
 //! The casters of a scene, examined once for all its lights.
 
 use crate::geometry::caster::{Caster, CasterPolicy, Counting};
-use crate::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use crate::geometry::silhouette::{Orientation, Silhouette};
+use crate::geometry::slivers::{Slivers, facing};
 use crate::technique::{Choice, Param, TechniqueError};
 use crate::world::light::HardLight;
 use crate::world::scene::{Object, Scene};
@@ -63,7 +64,7 @@ impl Examined<'_> {
     /// How often each triangle casts, seen from `light`.
     pub(crate) fn orientation(&self, light: HardLight) -> Orientation {
         let mesh = &self.object.mesh;
-        let facing = light_facing(mesh, light);
+        let facing = facing(mesh, self.caster.adjacency(), light, Slivers::WithoutArea);
         match self.caster.counting(mesh, light) {
             Counting::LightFacing => Orientation::closed(&facing),
             Counting::AllTriangles => Orientation::generalised(&facing),

@@ -30,14 +30,18 @@
 //! wedge is missing, it is not, and the difference stays with everything behind:
 //! streaks along the rays of the eye (counted in `overlapping-side-planes` and
 //! `wedges-without-sides`; `penumbra-wedges-restructured` keeps such errors where
-//! they arise). Wedges of lights so small that f32 does not tell front from back
-//! plane (1e-4 of the scene) may be missed at single pixels.
+//! they arise). Wedges of lights of about 1e-4 of the scene, whose front and back
+//! planes f32 hardly tells apart, may be missed at single pixels; still smaller lights
+//! cast hard shadows (`light-as-point`).
 
 use std::sync::Arc;
 
 use gnomon_raster::state::{ColorTargetState, CullMode, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
+use gnomon_raster::{
+    Draw, IndexBuffer, LoadOp, RenderPass, RenderPipeline, TextureId, VertexBuffer,
+};
 use gnomon_shaders::penumbra::FULL;
+use gnomon_shaders::penumbra::buffers::Boundary;
 use gnomon_shaders::penumbra::crossing::WedgeCrossing;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 use gnomon_shaders::transform::HomogeneousPoints;
@@ -48,6 +52,8 @@ use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::{self, LitTest};
 use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::{binding, homogeneous, homogeneous_draw};
+use crate::parts::volumes::near_pyramid::NearPyramid;
+use crate::parts::volumes::{light_contacts, near_cap};
 use crate::parts::wedges::penumbra::light::{self, LightSphere};
 use crate::parts::wedges::penumbra::report::LinkedReport;
 use crate::parts::wedges::penumbra::screen::{self, Screen};
@@ -156,10 +162,9 @@ impl Technique for PenumbraWedges {
         let buffer = penumbra::light_intensity(size, &mut frame.recording)?;
         let visibility = penumbra::visibility(buffer);
         frame.lit(LitTest::Visibility(visibility), |light| {
-            let mut pass =
-                penumbra::intensity_pass(light.label("wedges"), buffer, penumbra::cleared(FULL));
-            draws.fill(light, &mut pass);
-            let mut passes = vec![Pass::new(PassRole::Wedges, pass)];
+            let mut found = LightWedges::default();
+            draws.fill(light, &mut found);
+            let mut passes = draws.intensity_passes(light, buffer, found);
             let label = light.label("not receiving");
             passes.extend(penumbra::not_receiving_pass(
                 label,
@@ -188,38 +193,150 @@ struct CrossingDraws<'a> {
     screen: Screen,
 }
 
+/// What one light needs drawn.
+struct LightWedges {
+    /// The light has no extent: there are no wedges.
+    is_hard: bool,
+    /// The eye's intensity among wedges.
+    start: f32,
+    /// Volumes of casters for which the light has no extent.
+    volumes: Vec<Draw>,
+    wedges: Vec<Draw>,
+}
+
+impl Default for LightWedges {
+    fn default() -> Self {
+        Self {
+            is_hard: false,
+            start: FULL,
+            volumes: Vec::new(),
+            wedges: Vec::new(),
+        }
+    }
+}
+
 impl CrossingDraws<'_> {
-    /// Adds what a light's wedges need to its empty pass.
-    fn fill(&self, turn: &mut LightTurn<'_, '_>, pass: &mut RenderPass) {
+    /// The pass of hard volumes, whose depth is tested, and that of wedges, as far as
+    /// there are.
+    fn intensity_passes(
+        &self,
+        turn: &LightTurn<'_, '_>,
+        buffer: TextureId,
+        found: LightWedges,
+    ) -> Vec<Pass> {
+        let start = match self.settings.start {
+            Start::Eye => found.start,
+            Start::Lit => FULL,
+        };
+        let mut load = penumbra::cleared(start);
+        let mut list = Vec::new();
+        if found.is_hard || !found.volumes.is_empty() {
+            // One name where there is one pass.
+            let (role, what) = match found.is_hard {
+                true => (PassRole::Wedges, "wedges"),
+                false => (PassRole::Volumes, "volumes"),
+            };
+            let mut pass = penumbra::intensity_pass(turn.label(what), buffer, load);
+            pass.depth_stencil = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
+            pass.draws = found.volumes;
+            list.push(Pass::new(role, pass));
+            load = LoadOp::Load;
+        }
+        if !found.is_hard {
+            let pass = RenderPass {
+                draws: found.wedges,
+                ..penumbra::intensity_pass(turn.label("wedges"), buffer, load)
+            };
+            list.push(Pass::new(PassRole::Wedges, pass));
+        }
+        list
+    }
+
+    /// Finds what a light needs drawn.
+    fn fill(&self, turn: &mut LightTurn<'_, '_>, found: &mut LightWedges) {
         let (light, source) = (turn.number, turn.light());
+        turn.notes
+            .warnings
+            .extend(light_contacts::warning(turn.scene, light));
         turn.notes
             .warnings
             .extend(light::substitution(light, source));
         let Some(sphere) = LightSphere::of(source) else {
-            pass.depth_stencil = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
-            for caster in self.casters {
-                let (draw, used) =
-                    hard::draw(turn.scene, turn.view(), self.size, light, caster, None);
-                pass.draws.push(draw);
-                turn.notes.casters.push(used);
-            }
+            found.is_hard = true;
+            self.casters
+                .iter()
+                .for_each(|c| self.hard_volume(turn, c, found));
             return;
         };
         let mut report = LinkedReport::default();
         let mut start = FULL;
         let linked = self.settings.penumbra.linked();
-        for caster in self.casters {
+        let (points, others): (Vec<_>, Vec<_>) = self
+            .casters
+            .iter()
+            .partition(|c| sphere.is_point_for(&c.object.mesh));
+        points.iter().for_each(|c| self.hard_volume(turn, c, found));
+        for caster in others {
             let volume = caster.soft_volume(&sphere, &linked, &mut report);
             start += self.seen_by_eye(turn, caster, &volume);
+            found.wedges.extend(self.near_caps(turn, caster, &volume));
             let wedges = volume.wedges.iter();
-            pass.draws
+            found
+                .wedges
                 .extend(wedges.map(|w| self.draw(turn, &caster.object.name, w)));
         }
-        if self.settings.start == Start::Eye {
-            pass.color[0].load = penumbra::cleared(start);
-        }
+        found.start = start;
+        let warning = light::point_warning(light, points.len());
+        turn.notes.warnings.extend(warning);
         turn.notes.warnings.extend(start_warning(light, start));
         turn.notes.warnings.extend(report.warnings(light));
+    }
+
+    fn hard_volume(
+        &self,
+        turn: &mut LightTurn<'_, '_>,
+        caster: &Examined<'_>,
+        found: &mut LightWedges,
+    ) {
+        let (scene, view, light) = (turn.scene, turn.view(), turn.number);
+        let (draw, used) = hard::draw(scene, view, self.size, light, caster, None);
+        found.volumes.push(draw);
+        turn.notes.casters.push(used);
+    }
+
+    /// Lit triangles that the near plane cuts away: rays enter or leave the umbra
+    /// there.
+    fn near_caps(
+        &self,
+        turn: &LightTurn<'_, '_>,
+        caster: &Examined<'_>,
+        volume: &SoftVolume,
+    ) -> Option<Draw> {
+        let view = turn.view();
+        let pyramid = NearPyramid::before_near_plane(&turn.scene.camera, self.size);
+        let caps = near_cap::cut_away(&pyramid, &caster.object.mesh, &volume.cap);
+        if caps.is_empty() {
+            return None;
+        }
+        let vertices = VertexBuffer {
+            data: near_cap::corners(view, &caps).flatten().collect(),
+            stride: 4,
+        };
+        let pipeline = RenderPipeline {
+            label: "near cap".into(),
+            vertex: HomogeneousPoints(near_cap::clip_from_world(view)).stage(),
+            fragment: Some(Boundary { front: -FULL }.stage()),
+            primitive: near_cap::primitive(),
+            depth_stencil: DepthStencilState::default(),
+            color_targets: vec![ColorTargetState::ADDITIVE],
+        };
+        let indices = IndexBuffer::new((0..vertices.len() as u32).collect());
+        Some(Draw::indexed(
+            &caster.object.name,
+            &Arc::new(pipeline),
+            &Arc::new(vertices),
+            &Arc::new(indices),
+        ))
     }
 
     /// What a caster takes from, or its wedges give back to, the eye.

@@ -218,7 +218,8 @@ impl Sampling {
 }
 
 impl Sampled {
-    /// Adds up what became of each caster; keeps a warning once.
+    /// Adds up what became of each caster; keeps a warning once, with its largest
+    /// count.
     fn join(&mut self, uses: Vec<CasterUse>, warnings: Vec<Warning>) {
         if self.uses.is_empty() {
             self.uses = uses;
@@ -236,7 +237,7 @@ impl Sampled {
                 .iter_mut()
                 .find(|w| w.message == warning.message)
             {
-                Some(known) => known.count += warning.count,
+                Some(known) => known.count = known.count.max(warning.count),
                 None => self.warnings.push(warning),
             }
         }

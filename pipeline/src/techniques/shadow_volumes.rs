@@ -1,8 +1,9 @@
 //! Hard shadows by stencil volumes: z-pass, z-fail, or the cheaper one that is
 //! right, caster by caster (docs/papers.md, hard shadow volumes).
 //!
-//! Per light: count the volumes into the stencil, wrapping modulo 256, then add
-//! the light where the count is 0. Volumes reach to infinity. z-fail draws both
+//! Per light: count the volumes into the stencil, then add the light where the count
+//! is 0. More than 255 that may overlap are counted in ranges
+//! ([`crate::parts::volumes::stencil_ranges`]). Volumes reach to infinity. z-fail draws both
 //! caps and the sides where they *fail* the depth test; the light cap is the
 //! caster's own triangles through the caster's own arithmetic, so it fails
 //! against the surface by equality. z-pass draws the sides where they pass; it
@@ -18,6 +19,7 @@ use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::{LitTest, Targets};
 use crate::parts::shadowed_frame::ShadowedFrame;
+use crate::parts::volumes::light_contacts;
 use crate::parts::volumes::volume_draws::{VolumeCasters, VolumeSettings};
 use crate::technique::{
     Capabilities, Frame, ParamInfo, Params, Pass, PassRole, ShadowKind, Technique, TechniqueError,
@@ -54,6 +56,8 @@ impl Technique for ShadowVolumes {
         let casters = VolumeCasters::new(scene, size, &VolumeSettings::read(params)?)?;
         let frame = ShadowedFrame::new(scene, size, &settings)?.with_ambient();
         frame.lit(LitTest::StencilZero, |light| {
+            let contact = light_contacts::warning(scene, light.number);
+            light.notes.warnings.extend(contact);
             let built = casters.volumes(light.number, light.light().hard(), &[]);
             light.notes.casters.extend(built.uses);
             light.notes.warnings.extend(built.warnings);

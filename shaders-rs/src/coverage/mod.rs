@@ -89,17 +89,18 @@ impl Projector {
         }
     }
 
-    /// The light's centre, relative to the origin of positions.
+    /// What a fragment's position is taken relative to: the light's centre or, of a
+    /// far light, a place in the scene; relative to the origin of positions.
     #[inline(always)]
     #[must_use]
-    pub fn centre(&self) -> [f32; 3] {
+    pub fn origin(&self) -> [f32; 3] {
         match self {
-            Self::Flat(light) => light.centre,
-            Self::Sphere(light) => light.centre,
+            Self::Flat(light) => light.origin,
+            Self::Sphere(light) => light.origin,
         }
     }
 
-    /// The edge as seen from `from`, a position relative to the light's centre.
+    /// The edge as seen from `from`, a position relative to the light's origin.
     #[inline(always)]
     pub fn project<L: Lanes>(&self, l: L, from: [F32<L>; 3], edge: &Edge) -> Projected<L> {
         outlined(
@@ -114,11 +115,14 @@ impl Projector {
 }
 
 /// A parallelogram or a flat disc, shining to one side. Edges are in light
-/// coordinates: the third is the distance in front of the light.
+/// coordinates, from the light's origin: the third is the distance in front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatLight {
-    /// Centre, relative to the origin of positions.
-    pub centre: [f32; 3],
+    /// See [`Projector::origin`].
+    pub origin: [f32; 3],
+    /// Of a light so far that positions relative to its centre lose their digits: the
+    /// origin in light coordinates from its centre. Else the origin is the centre.
+    pub far: Option<[f32; 3]>,
     /// Covectors that give light coordinates; the third is positive where the
     /// light shines.
     pub axes: [[f32; 3]; 3],
@@ -126,7 +130,8 @@ pub struct FlatLight {
     pub image: Image,
 }
 uniforms!(FlatLight {
-    centre,
+    origin,
+    far,
     axes,
     image
 });
@@ -143,12 +148,42 @@ impl FlatLight {
         );
         let [a, b] = edge;
         let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+        let part = [zero, one];
+        let Some(offset) = self.far else {
+            return Projected {
+                ends: [onto(l, [x, y, z], a), onto(l, [x, y, z], b)],
+                part,
+                valid: z.gt(zero),
+            };
+        };
+        let eye = [x + offset[0], y + offset[1], z + offset[2]];
+        let ends = [a, b].map(
+            #[inline(always)]
+            |end| onto_from_afar(eye, minus(l, end, [x, y, z])),
+        );
         Projected {
-            ends: [onto(l, [x, y, z], a), onto(l, [x, y, z], b)],
-            part: [zero, one],
-            valid: z.gt(zero),
+            ends,
+            part,
+            valid: eye[2].gt(zero),
         }
     }
+}
+
+/// A point less a fragment's position.
+#[inline(always)]
+fn minus<L: Lanes>(l: L, point: &[f32; 3], from: [F32<L>; 3]) -> [F32<L>; 3] {
+    each3(
+        #[inline(always)]
+        |i| F32::splat(l, point[i]) - from[i],
+    )
+}
+
+/// [`onto`], with the end given from the eye: what it is in digits that do not
+/// cancel however far the light is.
+#[inline(always)]
+fn onto_from_afar<L: Lanes>(eye: [F32<L>; 3], to_end: [F32<L>; 3]) -> [F32<L>; 3] {
+    let [x, y, z] = to_end;
+    [eye[2] * x - eye[0] * z, eye[2] * y - eye[1] * z, -z]
 }
 
 /// Image of an end, the eye being in light coordinates.
@@ -163,11 +198,13 @@ fn onto<L: Lanes>(l: L, eye: [F32<L>; 3], end: &[f32; 3]) -> [F32<L>; 3] {
 }
 
 /// A sphere, seen as the disc through its centre that faces the fragment. Edges
-/// are relative to its centre.
+/// are relative to its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereLight {
-    /// Centre, relative to the origin of positions.
-    pub centre: [f32; 3],
+    /// See [`Projector::origin`].
+    pub origin: [f32; 3],
+    /// As for [`FlatLight`], but in the directions of world space.
+    pub far: Option<[f32; 3]>,
     /// Radius.
     pub radius: f32,
     /// Whether the disc is as large as a sphere looks, `r / sqrt(1 - r^2 / D^2)`
@@ -175,7 +212,8 @@ pub struct SphereLight {
     pub seen: bool,
 }
 uniforms!(SphereLight {
-    centre,
+    origin,
+    far,
     radius,
     seen
 });
@@ -184,6 +222,16 @@ impl SphereLight {
     #[inline(always)]
     fn project<L: Lanes>(&self, l: L, from: [F32<L>; 3], edge: &Edge) -> Projected<L> {
         let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+        let from_origin = from;
+        let offset = self.far.unwrap_or_default();
+        let from = if self.far.is_some() {
+            each3(
+                #[inline(always)]
+                |i| from_origin[i] + offset[i],
+            )
+        } else {
+            from
+        };
         let squared = dot3(from, from);
         let radius = self.radius;
         let valid = squared.gt(F32::splat(l, radius * radius));
@@ -203,8 +251,29 @@ impl SphereLight {
         let [u, v] = across(l, towards);
         let eye = distance / size;
         let frame = [u, v, towards];
-        let a = local(l, frame, size, &edge[0]);
-        let b = local(l, frame, size, &edge[1]);
+        // Of a far light, ends as seen from the fragment: only their height over the
+        // centre has the distance in it.
+        let from_eye = if self.far.is_some() {
+            [&edge[0], &edge[1]].map(
+                #[inline(always)]
+                |end| minus(l, end, from_origin),
+            )
+        } else {
+            [&edge[0], &edge[1]].map(
+                #[inline(always)]
+                |end| minus(l, end, [zero; 3]),
+            )
+        };
+        let [mut a, mut b] = from_eye.map(
+            #[inline(always)]
+            |p| local(frame, size, p),
+        );
+        let mut below = [eye - a[2], eye - b[2]];
+        if self.far.is_some() {
+            below = [-a[2], -b[2]];
+            a[2] = a[2] + eye;
+            b[2] = b[2] + eye;
+        }
         // What is behind that hides nothing of it.
         let [za, zb] = [a[2], b[2]];
         let [ha, hb] = [za - horizon, zb - horizon];
@@ -212,8 +281,8 @@ impl SphereLight {
         let (behind_a, behind_b) = (ha.lt(zero), hb.lt(zero));
         Projected {
             ends: [
-                [a[0] * eye, a[1] * eye, eye - za],
-                [b[0] * eye, b[1] * eye, eye - zb],
+                [a[0] * eye, a[1] * eye, below[0]],
+                [b[0] * eye, b[1] * eye, below[1]],
             ],
             part: [
                 behind_a.select_f32(cut, zero),
@@ -248,11 +317,7 @@ pub(crate) fn outlined<L: Lanes, T>(l: L, f: impl FnOnce() -> T) -> T {
 
 /// A point in coordinates of the frame, in units of `size`.
 #[inline(always)]
-fn local<L: Lanes>(l: L, frame: [[F32<L>; 3]; 3], size: F32<L>, point: &[f32; 3]) -> [F32<L>; 3] {
-    let p = each3(
-        #[inline(always)]
-        |i| F32::splat(l, point[i]),
-    );
+fn local<L: Lanes>(frame: [[F32<L>; 3]; 3], size: F32<L>, p: [F32<L>; 3]) -> [F32<L>; 3] {
     each3(
         #[inline(always)]
         |i| dot3(frame[i], p) / size,

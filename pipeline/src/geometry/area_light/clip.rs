@@ -79,8 +79,13 @@ impl AreaLight {
     }
 
     /// A point that a segment in a flat light's plane shares with the light.
-    fn meets(&self, [a, b]: [DVec3; 2]) -> Option<DVec3> {
-        let near = IN_PLANE * self.bounding_radius();
+    fn meets(&self, ends: [DVec3; 2]) -> Option<DVec3> {
+        self.meets_within(ends, IN_PLANE * self.bounding_radius())
+    }
+
+    /// A point of a segment in a flat light's plane that is at most about `near`
+    /// outside the light.
+    pub(crate) fn meets_within(&self, [a, b]: [DVec3; 2], near: f64) -> Option<DVec3> {
         match self {
             Self::Sphere { .. } => None,
             Self::Disc { centre, radius, .. } => {
@@ -120,7 +125,7 @@ fn front_part(ends: [DVec3; 2], [za, zb]: [f64; 2]) -> [DVec3; 2] {
 }
 
 /// Point of a segment that is nearest to `p`.
-fn nearest_on_segment([a, b]: [DVec3; 2], p: DVec3) -> DVec3 {
+pub(crate) fn nearest_on_segment([a, b]: [DVec3; 2], p: DVec3) -> DVec3 {
     let d = b - a;
     let along = d.dot(p - a) / d.length_squared();
     // Not a number for a segment without length.

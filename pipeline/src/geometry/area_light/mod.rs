@@ -7,6 +7,7 @@
 
 mod clip;
 
+pub(crate) use clip::nearest_on_segment;
 pub use clip::{Clipped, LitEdge};
 
 use glam::DVec3;

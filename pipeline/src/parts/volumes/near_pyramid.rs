@@ -26,11 +26,18 @@ pub(crate) struct NearPyramid {
 
 impl NearPyramid {
     pub(crate) fn new(camera: &Camera, size: [u32; 2], light: HardLight) -> Self {
-        let mut points = vec![camera.eye.extend(1.0)];
-        points.extend(
-            corner_rays(camera, size).map(|ray| (camera.eye + ray * camera.near).extend(1.0)),
-        );
+        let mut points = before_near(camera, size);
         points.push(homogeneous(light));
+        Self::hull(camera, points)
+    }
+
+    /// The hull of the eye and the near rectangle alone: what a caster must touch
+    /// to be seen cut open.
+    pub(crate) fn before_near_plane(camera: &Camera, size: [u32; 2]) -> Self {
+        Self::hull(camera, before_near(camera, size))
+    }
+
+    fn hull(camera: &Camera, points: Vec<DVec4>) -> Self {
         let extent = |p: &DVec4| (p.truncate() - camera.eye * p.w).length();
         let scale =
             points.iter().map(extent).fold(camera.near, f64::max) + camera.eye.length() * 1e-6;
@@ -51,7 +58,8 @@ impl NearPyramid {
         (0..mesh.triangles().len()).any(|t| self.may_touch_triangle(mesh.corners(t)))
     }
 
-    fn may_touch_triangle(&self, corners: [DVec3; 3]) -> bool {
+    /// Whether the triangle may reach into the pyramid.
+    pub(crate) fn may_touch_triangle(&self, corners: [DVec3; 3]) -> bool {
         let [a, b, c] = corners.map(|p| p.extend(1.0));
         !self.is_beyond_a_face(&[a, b, c])
             && !plane(a, b, c).is_some_and(|p| self.is_on_one_side_of(p))
@@ -95,6 +103,13 @@ pub(crate) fn outside_view(camera: &Camera, size: [u32; 2], mesh: &Mesh, light: 
             beyond(p - camera.eye) && beyond(light.shadow_direction(p))
         })
     })
+}
+
+/// The eye and the corners of the near rectangle.
+fn before_near(camera: &Camera, size: [u32; 2]) -> Vec<DVec4> {
+    let corners = corner_rays(camera, size).map(|ray| camera.eye + ray * camera.near);
+    let all = [camera.eye].into_iter().chain(corners);
+    all.map(|p| p.extend(1.0)).collect()
 }
 
 fn homogeneous(light: HardLight) -> DVec4 {

@@ -7,8 +7,10 @@ use gnomon_raster::{Draw, RenderPipeline, VertexBuffer};
 use gnomon_shaders::transform::HomogeneousPoints;
 
 use super::near_pyramid::{NearPyramid, outside_view};
+use super::stencil_ranges::{self, OVERFLOW, Overflow, end_of_range, in_range};
 use crate::choices;
 use crate::geometry::caster::CasterPolicy;
+use crate::geometry::layers::most_layers;
 use crate::geometry::volume::ShadowVolume;
 use crate::parts::casters::{self, Examined, OPEN_CASTERS, SKIP};
 use crate::parts::passes::{self, View};
@@ -16,7 +18,7 @@ use crate::technique::{
     CasterUse, Param, ParamInfo, Params, TechniqueError, VolumeMethod, Warning,
 };
 use crate::world::light::HardLight;
-use crate::world::scene::{Object, Scene};
+use crate::world::scene::Scene;
 
 choices! {
     /// How volumes are counted.
@@ -51,16 +53,19 @@ impl CountMethod {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct VolumeSettings {
     method: CountMethod,
+    overflow: Overflow,
     open_casters: CasterPolicy,
     skip: bool,
 }
 
 impl VolumeSettings {
-    pub(crate) const PARAMS: &'static [ParamInfo] = &[METHOD.info, OPEN_CASTERS.info, SKIP.info];
+    pub(crate) const PARAMS: &'static [ParamInfo] =
+        &[METHOD.info, OVERFLOW.info, OPEN_CASTERS.info, SKIP.info];
 
     pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
         Ok(Self {
             method: params.get(&METHOD)?,
+            overflow: params.get(&OVERFLOW)?,
             open_casters: params.get(&OPEN_CASTERS)?,
             skip: params.get(&SKIP)?,
         })
@@ -74,7 +79,23 @@ pub(crate) struct VolumeCasters<'a> {
     size: [u32; 2],
     method: Option<VolumeMethod>,
     skip: bool,
+    /// Whether more than 255 volumes may wrap the stencil.
+    wraps: bool,
     examined: Vec<Examined<'a>>,
+}
+
+/// A caster's volume, or a part of it, that is to be drawn.
+struct Thrown<'a> {
+    examined: &'a Examined<'a>,
+    method: VolumeMethod,
+    volume: ShadowVolume,
+}
+
+/// Whether the stencil counts all volumes at once.
+#[derive(Clone, Copy)]
+enum Ranges {
+    One,
+    Several,
 }
 
 /// The volumes of all casters for one light point.
@@ -103,6 +124,7 @@ impl<'a> VolumeCasters<'a> {
             size,
             method: settings.method.forced(),
             skip: settings.skip,
+            wraps: settings.overflow == Overflow::Wrap,
             examined: casters::examine(scene, settings.open_casters)?,
         })
     }
@@ -117,13 +139,9 @@ impl<'a> VolumeCasters<'a> {
     ) -> CasterVolumes {
         let pyramid = NearPyramid::new(&self.scene.camera, self.size, hard);
         let mut built = CasterVolumes::default();
-        for Examined {
-            number,
-            object,
-            caster,
-        } in &self.examined
-        {
-            let mesh = &object.mesh;
+        let mut thrown = Vec::new();
+        for examined in &self.examined {
+            let mesh = &examined.object.mesh;
             let hidden = self.skip && outside_view(&self.scene.camera, self.size, mesh, hard);
             let method = match self.method {
                 _ if hidden => VolumeMethod::Skipped,
@@ -132,30 +150,60 @@ impl<'a> VolumeCasters<'a> {
                 None => VolumeMethod::DepthPass,
             };
             let mut used = CasterUse {
-                object: *number,
+                object: examined.number,
                 light,
                 method,
                 triangles: [0; 3],
             };
             if !hidden {
-                let volume = caster.volume(mesh, hard);
+                let volume = examined.caster.volume(mesh, hard);
                 used.triangles = volume.ranges().map(|r| r.len());
-                built.warnings.extend(wrap_warning(object, &volume));
-                built.draws.push(self.draw(object, &volume, method, color));
+                thrown.push(Thrown {
+                    examined,
+                    method,
+                    volume,
+                });
             }
             built.uses.push(used);
         }
+        let layers = layers(hard, &thrown);
+        let overflows = layers > stencil_ranges::CAPACITY;
+        if overflows {
+            let warning = stencil_ranges::warning(light, layers, self.wraps);
+            built.warnings.push(warning);
+        }
+        built.draws = if overflows && !self.wraps {
+            self.in_ranges(thrown, hard, color)
+        } else {
+            let draw = |t: &Thrown<'_>| self.draw(t, color, Ranges::One);
+            thrown.iter().map(draw).collect()
+        };
         built
     }
 
-    fn draw(
+    /// The volumes in as many groups as there are ranges, each with its end.
+    fn in_ranges(
         &self,
-        object: &Object,
-        volume: &ShadowVolume,
-        method: VolumeMethod,
+        thrown: Vec<Thrown<'_>>,
+        hard: HardLight,
         color: &[ColorTargetState],
-    ) -> Draw {
-        let depth_pass = method == VolumeMethod::DepthPass;
+    ) -> Vec<Draw> {
+        let parts = thrown.into_iter().flat_map(|t| {
+            let parts = stencil_ranges::parts(t.examined, t.volume, hard).into_iter();
+            parts.map(move |(volume, layers)| (Thrown { volume, ..t }, layers))
+        });
+        let draws = |group: Vec<Thrown<'_>>| {
+            let counts = group.iter().map(|t| self.draw(t, color, Ranges::Several));
+            let counts: Vec<Draw> = counts.collect();
+            counts.into_iter().chain([end_of_range(color)])
+        };
+        let groups = stencil_ranges::groups(parts).into_iter();
+        groups.flat_map(draws).collect()
+    }
+
+    fn draw(&self, thrown: &Thrown<'_>, color: &[ColorTargetState], ranges: Ranges) -> Draw {
+        let volume = &thrown.volume;
+        let depth_pass = thrown.method == VolumeMethod::DepthPass;
         let (label, depth_stencil, triangles) = if depth_pass {
             (
                 "z-pass",
@@ -174,7 +222,10 @@ impl<'a> VolumeCasters<'a> {
             vertex: HomogeneousPoints(self.view.clip_from_world).stage(),
             fragment: None,
             primitive: passes::clamped(),
-            depth_stencil,
+            depth_stencil: match ranges {
+                Ranges::One => depth_stencil,
+                Ranges::Several => in_range(depth_stencil),
+            },
             color_targets: color.to_vec(),
         };
         let (positions, triangles) = referenced(volume.positions(), triangles);
@@ -184,7 +235,7 @@ impl<'a> VolumeCasters<'a> {
         };
         let indices = passes::index_buffer(&triangles);
         Draw::indexed(
-            &object.name,
+            &thrown.examined.object.name,
             &Arc::new(pipeline),
             &Arc::new(vertices),
             &indices,
@@ -199,6 +250,16 @@ impl<'a> VolumeCasters<'a> {
         let [x, y, z] = self.view.point([x, y, z]);
         [x, y, z, w]
     }
+}
+
+/// A number of layers that the volumes do not exceed; of few triangles, their number.
+fn layers(hard: HardLight, thrown: &[Thrown<'_>]) -> usize {
+    let volumes: Vec<&ShadowVolume> = thrown.iter().map(|t| &t.volume).collect();
+    let triangles = volumes.iter().map(|v| v.light_cap().len()).sum();
+    if triangles <= stencil_ranges::CAPACITY {
+        return triangles;
+    }
+    most_layers(hard, &volumes)
 }
 
 /// The positions that `triangles` refer to, in their order, and the triangles on
@@ -219,18 +280,6 @@ fn referenced(positions: &[[f32; 4]], triangles: &[[u32; 3]]) -> (Vec<[f32; 4]>,
     }
     let moved = triangles.iter().map(|t| t.map(|i| place[i as usize]));
     (kept, moved.collect())
-}
-
-fn wrap_warning(object: &Object, volume: &ShadowVolume) -> Option<Warning> {
-    (volume.max_multiplicity() > 255).then(|| Warning {
-        code: "edge-multiplicity",
-        count: 1,
-        message: format!(
-            "object '{}': {} volume sides leave one edge; a multiple of 256 counts as lit",
-            object.name,
-            volume.max_multiplicity()
-        ),
-    })
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use gnomon_raster::state::{
     StencilOperation, StencilState,
 };
 use gnomon_raster::{RenderPipeline, TextureBinding, VertexBuffer};
+use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::inside::{Part, WedgeInside};
 use gnomon_shaders::penumbra::intensity::IntensityRates;
 use gnomon_shaders::penumbra::plane::ScreenPlane;
@@ -19,13 +20,14 @@ use crate::parts::casters::Examined;
 use crate::parts::passes::{self, View};
 use crate::parts::shadowed_frame::LightTurn;
 use crate::parts::visibility::binding;
+use crate::parts::volumes::near_pyramid::NearPyramid;
 use crate::parts::wedges::penumbra::hard::{self, Method};
-use crate::parts::wedges::penumbra::light::LightSphere;
+use crate::parts::wedges::penumbra::light::{self, LightSphere};
 use crate::parts::wedges::penumbra::report::LinkedReport;
 use crate::parts::wedges::penumbra::shape::{self, Faces, WedgeShape};
 use crate::parts::wedges::penumbra::volume::SoftVolume;
 use crate::parts::wedges::penumbra::{axes, screen};
-use crate::technique::CasterUse;
+use crate::technique::{CasterUse, VolumeMethod};
 use crate::world::scene::Scene;
 
 impl InsideDraws<'_> {
@@ -49,14 +51,22 @@ impl InsideDraws<'_> {
         let mut report = LinkedReport::default();
         let settings = self.choices.penumbra.linked();
         let view = turn.view();
-        for caster in self.casters {
+        let (points, others): (Vec<_>, Vec<_>) = self
+            .casters
+            .iter()
+            .partition(|c| sphere.is_point_for(&c.object.mesh));
+        points.iter().for_each(|c| self.hard_volume(turn, c, draws));
+        let warning = light::point_warning(turn.number, points.len());
+        turn.notes.warnings.extend(warning);
+        for caster in others {
             let volume = caster.soft_volume(sphere, &settings, &mut report);
             let method = self
                 .choices
                 .forced
-                .unwrap_or_else(|| choose(turn.scene, caster, &volume));
+                .unwrap_or_else(|| choose(turn.scene, self.size, caster, &volume));
             if method == Method::DepthFail {
                 self.caps(view, caster, &volume, draws);
+                draws.start -= FULL * volume.all_around as f32;
             }
             for wedge in &volume.wedges {
                 self.wedge(view, &caster.object.name, wedge, method, draws);
@@ -81,6 +91,27 @@ impl InsideDraws<'_> {
         if self.choices.three {
             warnings.extend(report.stencil_warning(light));
         }
+    }
+
+    /// The volume of a caster for which the light has no extent, counted with the caps.
+    fn hard_volume(
+        &self,
+        turn: &mut LightTurn<'_, '_>,
+        caster: &Examined<'_>,
+        draws: &mut LightDraws,
+    ) {
+        let (scene, view, light) = (turn.scene, turn.view(), turn.number);
+        let forced = self.choices.forced;
+        let (mut draw, used) = hard::draw(scene, view, self.size, light, caster, forced);
+        if self.choices.three {
+            let method = match used.method {
+                VolumeMethod::DepthPass => Method::DepthPass,
+                _ => Method::DepthFail,
+            };
+            draw.pipeline = Arc::new(into_stencil((*draw.pipeline).clone(), method));
+        }
+        draws.tested.push(draw);
+        turn.notes.casters.push(used);
     }
 
     /// Top, patches and bottom of a volume, for z-fail.
@@ -109,9 +140,7 @@ impl InsideDraws<'_> {
             }
             let mut pipeline = hard::boundary_pipeline(label, view, Method::DepthFail);
             if self.choices.three {
-                pipeline.fragment = None;
-                pipeline.color_targets.clear();
-                pipeline.depth_stencil.stencil = counted(Method::DepthFail);
+                pipeline = into_stencil(pipeline, Method::DepthFail);
             }
             draws.tested.push(faces.draw(label, pipeline, Vec::new()));
         }
@@ -235,14 +264,24 @@ impl InsideDraws<'_> {
     }
 }
 
-/// z-fail where the eye is in or next to a wedge, or in the umbra.
-fn choose(scene: &Scene, caster: &Examined<'_>, volume: &SoftVolume) -> Method {
+/// A boundary counted in a stencil instead of in the light-intensity buffer.
+fn into_stencil(mut pipeline: RenderPipeline, method: Method) -> RenderPipeline {
+    pipeline.fragment = None;
+    pipeline.color_targets.clear();
+    pipeline.depth_stencil.stencil = counted(method);
+    pipeline
+}
+
+/// z-fail where the eye is in or next to a wedge, or in the umbra, or where the near
+/// plane cuts the caster, so that rays enter the umbra through its surface.
+fn choose(scene: &Scene, size: [u32; 2], caster: &Examined<'_>, volume: &SoftVolume) -> Method {
     let camera = &scene.camera;
     // Next to: where a wedge's nearest face may be seen edge-on.
     let margin = camera.near + 1e-4 * (camera.target - camera.eye).length();
     let in_shadow =
         volume.may_hold(camera.eye, margin) || volume.winding(&caster.object.mesh, camera.eye) != 0;
-    if in_shadow {
+    let before_near_plane = NearPyramid::before_near_plane(camera, size);
+    if in_shadow || before_near_plane.may_touch(&caster.object.mesh) {
         Method::DepthFail
     } else {
         Method::DepthPass

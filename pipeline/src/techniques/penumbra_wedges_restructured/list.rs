@@ -14,6 +14,7 @@ use super::{Choices, InsideDraws, WedgeDraw};
 use crate::parts::passes::Targets;
 use crate::parts::shadowed_frame::LightTurn;
 use crate::parts::visibility::{attachment, binding, full_screen};
+use crate::parts::volumes::light_contacts;
 use crate::parts::wedges::penumbra;
 use crate::parts::wedges::penumbra::light::{self, LightSphere};
 use crate::technique::{Pass, PassRole, TechniqueError};
@@ -22,8 +23,10 @@ use crate::technique::{Pass, PassRole, TechniqueError};
 pub(super) type Shaded = (Draw, Option<WedgeInside>);
 
 /// The draws of one light by the pass that they belong to.
-#[derive(Default)]
 pub(super) struct LightDraws {
+    /// The intensity before all draws: full, but for casters all around the light that
+    /// are counted from infinity.
+    pub(super) start: f32,
     /// Caps of z-fail, and volumes of lights without extent: depth is attached.
     pub(super) tested: Vec<Draw>,
     /// Boundaries of the umbra by facing, for the stencil.
@@ -32,6 +35,18 @@ pub(super) struct LightDraws {
     pub(super) intensity: Vec<Shaded>,
     /// The light has no extent: there are only volumes in `tested`.
     pub(super) hard: bool,
+}
+
+impl Default for LightDraws {
+    fn default() -> Self {
+        Self {
+            start: FULL,
+            tested: Vec::new(),
+            umbra: [Vec::new(), Vec::new()],
+            intensity: Vec::new(),
+            hard: false,
+        }
+    }
 }
 
 impl InsideDraws<'_> {
@@ -46,6 +61,9 @@ impl InsideDraws<'_> {
         turn.notes
             .warnings
             .extend(light::substitution(light, source));
+        turn.notes
+            .warnings
+            .extend(light_contacts::warning(turn.scene, light));
         let mut draws = LightDraws::default();
         match LightSphere::of(source) {
             None => self.hard_light(turn, &mut draws),
@@ -68,7 +86,7 @@ impl InsideDraws<'_> {
         turn: &LightTurn<'_, '_>,
     ) -> Vec<Shading> {
         let mut list = Vec::new();
-        let mut load = penumbra::cleared(FULL);
+        let mut load = penumbra::cleared(draws.start);
         // A light without wedges still needs its buffer cleared.
         if draws.hard || !draws.tested.is_empty() {
             let (role, what) = match draws.hard {
@@ -119,8 +137,8 @@ impl InsideDraws<'_> {
         let back_stencil = self.umbra_attachment(LoadOp::Load);
         let pass = only_stencil("umbra back", back_stencil);
         list.push(Shading::of(PassRole::UmbraStencil, pass, back));
-        let full = penumbra::cleared(FULL);
-        let mut pass = penumbra::intensity_pass(turn.label("umbra counts"), buffer, full);
+        let start = penumbra::cleared(draws.start);
+        let mut pass = penumbra::intensity_pass(turn.label("umbra counts"), buffer, start);
         pass.draws = vec![add_counts(&counts)];
         list.push(Shading::plain(PassRole::UmbraCounts, pass));
         let pass = penumbra::intensity_pass(turn.label("penumbra"), buffer, LoadOp::Load);

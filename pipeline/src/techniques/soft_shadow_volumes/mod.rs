@@ -23,6 +23,7 @@ mod volumes;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::ShadowedFrame;
+use crate::parts::volumes::light_contacts;
 use crate::parts::wedges::soft::covering::{CoveringSettings, Coverings};
 use crate::parts::wedges::soft::edges::SoftCasters;
 use crate::parts::wedges::soft::light::SoftLight;
@@ -131,7 +132,7 @@ impl Technique for SoftShadowVolumes {
         let settings = SoftVolumesSettings::read(params)?;
         let soft = settings.soft;
         let has_image = settings.covering.image.is_some();
-        let casters = SoftCasters::new(scene, soft.open_casters)?;
+        let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
         let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
         let (mut frame, positions) = frame.with_positions()?;
@@ -139,9 +140,14 @@ impl Technique for SoftShadowVolumes {
         let mut coverings = Coverings::default();
         frame.lit(LitTest::Visibility(buffers.visibility()), |turn| {
             let number = turn.number;
-            let light =
-                SoftLight::new(self.name(), turn.light(), number, turn.view(), soft.seen())?;
+            let contact = light_contacts::warning(scene, number);
+            turn.notes.warnings.extend(contact);
+            let (source, reach, seen) = (turn.light(), casters.size(), soft.seen());
+            let mut light = SoftLight::new(self.name(), source, number, turn.view(), reach, seen)?;
             let silhouettes = casters.silhouettes(light.centre);
+            if light.has_no_extent_for(&silhouettes.edges) {
+                light.sides.clear();
+            }
             let covering = &settings.covering;
             let mut volumes = LightVolumes {
                 view: turn.view(),

@@ -3,7 +3,7 @@
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::ColorTargetState;
 use gnomon_raster::{Draw, LoadOp, RenderPass, TextureBinding, TextureId};
-use gnomon_shaders::soft_volumes::{CountTo, CoverTo, HardPlane, Resolve};
+use gnomon_shaders::soft_volumes::{CountTo, CoverTo, Resolve};
 
 use super::buffers::Buffers;
 use crate::geometry::wedge::{Wedge, WedgeStatistics};
@@ -43,7 +43,7 @@ impl LightVolumes<'_> {
         let counting = Counting {
             view: self.view,
             positions: self.positions,
-            centre: self.light.centre,
+            light: self.light,
             to,
         };
         let targets = self.buffers.targets().into_iter();
@@ -77,7 +77,7 @@ impl LightVolumes<'_> {
                     let area =
                         WedgeArea::new(self.view, construction, &side.area, part.edge, &mut areas);
                     let shader = |to| {
-                        let plane = HardPlane(edge.normal);
+                        let plane = self.light.plane(edge);
                         self.covering.shader(side, side.edge(part.edge), plane, to)
                     };
                     match self.buffers.aside {

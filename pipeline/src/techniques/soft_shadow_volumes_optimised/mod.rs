@@ -28,6 +28,7 @@ use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::Positions;
+use crate::parts::volumes::light_contacts;
 use crate::parts::wedges::soft::edges::{Silhouettes, SoftCasters};
 use crate::parts::wedges::soft::light::{SoftLight, split};
 use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings, WEDGE};
@@ -192,7 +193,7 @@ impl Technique for SoftShadowVolumesOptimised {
     ) -> Result<Frame, TechniqueError> {
         let settings = OptimisedSettings::read(params)?;
         let soft = settings.soft;
-        let casters = SoftCasters::new(scene, soft.open_casters)?;
+        let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
         let frame = frame.with_horizon(self.name(), soft.horizon, false);
         let (mut frame, positions) = frame.with_positions()?;
@@ -200,6 +201,8 @@ impl Technique for SoftShadowVolumesOptimised {
         let mut lookups = Lookups::default();
         frame.lit(LitTest::Visibility(buffers.visibility()), |turn| {
             let (light, number) = (turn.light(), turn.number);
+            let contact = light_contacts::warning(scene, number);
+            turn.notes.warnings.extend(contact);
             let parts = split(self.name(), light, number, settings.split)?;
             let mut passes = Vec::new();
             let mut statistics = PartStatistics::default();
@@ -256,8 +259,12 @@ impl PartOfLight<'_> {
         let (settings, view) = (self.settings, turn.view());
         let source = &self.parts[self.part];
         let seen = settings.soft.seen();
-        let light = SoftLight::new(self.technique, source, turn.number, view, seen)?;
+        let reach = self.casters.size();
+        let mut light = SoftLight::new(self.technique, source, turn.number, view, reach, seen)?;
         let groups = settings.groups(self.casters, &light);
+        if groups.iter().all(|g| light.has_no_extent_for(&g.edges)) {
+            light.sides.clear();
+        }
         let volumes = PartVolumes {
             view,
             targets: turn.targets,

@@ -42,7 +42,7 @@ impl PartVolumes<'_> {
         let counting = Counting {
             view: self.view,
             positions: self.positions,
-            centre: self.light.centre,
+            light: self.light,
             to: CountTo::Visibility,
         };
         let pass = RenderPass {
@@ -103,7 +103,7 @@ impl PartVolumes<'_> {
                         None => WedgeArea::new(view, construction, light, part.edge, areas),
                         Some(h) => WedgeArea::half(view, construction, light, part.edge, h, areas),
                     };
-                    draws.extend(self.wedge(side, &part, HardPlane(edge.normal), &area, to));
+                    draws.extend(self.wedge(side, &part, self.light.plane(edge), &area, to));
                 }
             }
         }

@@ -5,7 +5,11 @@ use glam::DVec3;
 use super::light::LightSphere;
 use super::report::LinkedReport;
 use super::volume::SoftVolume;
+use crate::geometry::caster::Counting;
+use crate::geometry::silhouette::{Orientation, Silhouette};
 use crate::geometry::silhouette_loops::SilhouetteLoops;
+use crate::geometry::slivers::{Slivers, facing};
+use crate::geometry::volume::{select, turned};
 use crate::geometry::wedge::paper1::LinkedSettings;
 use crate::parts::casters::Examined;
 use crate::world::light::HardLight;
@@ -22,14 +26,32 @@ impl Examined<'_> {
     ) -> SoftVolume {
         let mesh = &self.object.mesh;
         let light = HardLight::Point(sphere.centre);
-        let loops = self.loops(mesh, light, met);
-        let cap = self.caster.volume(mesh, light).light_cap().to_vec();
-        SoftVolume::new(&loops, cap, sphere, settings, met)
+        // A loop round a needle would have wedges as wide as any.
+        let facing = facing(mesh, self.caster.adjacency(), light, Slivers::Needles);
+        let counting = self.caster.counting(mesh, light);
+        let (orientation, cap) = match counting {
+            Counting::LightFacing => (Orientation::closed(&facing), select(mesh, &facing, true)),
+            Counting::AllTriangles => (
+                Orientation::generalised(&facing),
+                turned(mesh, &facing, true),
+            ),
+        };
+        let loops = self.loops(mesh, &orientation, met);
+        let volume = SoftVolume::new(&loops, cap, sphere, settings, met);
+        if counting == Counting::AllTriangles && self.caster.report().is_closed() {
+            return volume.enclosing(mesh, sphere.centre);
+        }
+        volume
     }
 
     /// Points along each silhouette loop.
-    fn loops(&self, mesh: &Mesh, light: HardLight, met: &mut LinkedReport) -> Vec<Vec<DVec3>> {
-        let silhouette = self.silhouette(light);
+    fn loops(
+        &self,
+        mesh: &Mesh,
+        orientation: &Orientation,
+        met: &mut LinkedReport,
+    ) -> Vec<Vec<DVec3>> {
+        let silhouette = Silhouette::new(mesh, self.caster.adjacency(), orientation);
         // Silhouettes of orientations always balance; none is drawn if not.
         let Ok(loops) = SilhouetteLoops::new(&silhouette) else {
             met.unbalanced += 1;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::technique::Warning;
 use crate::world::light::{HardLight, Light, LightShape};
+use crate::world::mesh::Mesh;
 
 /// A spherical light, world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,30 @@ impl LightSphere {
         };
         (radius > 0.0).then_some(Self { centre, radius })
     }
+
+    /// Whether the light is so small beside its distance from the mesh that the
+    /// front and back planes of wedges are too close for f32: their shadow is hard.
+    pub(crate) fn is_point_for(&self, mesh: &Mesh) -> bool {
+        let distance = |i: u32| (mesh.position(i) - self.centre).length_squared();
+        let vertices = 0..mesh.positions().len() as u32;
+        let farthest = vertices.map(distance).fold(0.0, f64::max).sqrt();
+        self.radius < SMALLEST * farthest
+    }
+}
+
+/// The least radius over distance of which wedges can be told from their planes.
+const SMALLEST: f64 = 1e-5;
+
+/// Says so where casters have no wedges since the light is too small for them.
+pub(crate) fn point_warning(number: usize, casters: usize) -> Option<Warning> {
+    (casters > 0).then(|| Warning {
+        code: "light-as-point",
+        count: casters,
+        message: format!(
+            "light {number} is smaller than {SMALLEST} of its distance from {casters} casters; \
+             their shadows are hard"
+        ),
+    })
 }
 
 /// Says so where a light is not the sphere that it is drawn as.

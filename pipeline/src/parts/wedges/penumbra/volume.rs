@@ -33,6 +33,9 @@ pub(crate) struct SoftVolume {
     pub(crate) patches: Vec<Triangle>,
     /// At infinity.
     pub(crate) bottom: Vec<Triangle>,
+    /// How often all of infinity is added to the bottom: once for a caster round the
+    /// light, whose cap has no silhouette that would say so.
+    pub(crate) all_around: i32,
 }
 
 /// A piece of the umbra's boundary without wedge.
@@ -63,11 +66,19 @@ impl SoftVolume {
             cap,
             patches: Vec::new(),
             bottom: Vec::new(),
+            all_around: 0,
         };
         for points in loops {
             volume.add_loop(points, sphere, settings, met);
         }
         volume
+    }
+
+    /// For a caster round the light, on `mesh`: nothing hides the light's centre from
+    /// itself.
+    pub(crate) fn enclosing(mut self, mesh: &Mesh, centre: DVec3) -> Self {
+        self.all_around = -self.winding(mesh, centre);
+        self
     }
 
     fn add_loop(
@@ -110,7 +121,7 @@ impl SoftVolume {
             .chain(cap)
             .chain(self.patches.iter().copied())
             .chain(self.bottom.iter().copied());
-        winding::of_triangles(all, p)
+        winding::of_triangles(all, p) + self.all_around
     }
 
     /// Whether `p` may be inside a wedge, within `margin` in world units.

@@ -3,17 +3,21 @@
 //! One plane per edge, through the light's centre, rounded once: hard shadow
 //! quads and penumbrae use its very bits. The eye's own hard count and its sides
 //! are taken a hair in front of the eye, in f64, so that an eye on a plane is on
-//! one side of it for both.
+//! one side of it for both. What the near plane cuts out of a caster between eye and
+//! surface is kept too ([`near_cap`]).
 
 use glam::DVec3;
 
-use super::outlines::pieces;
 use crate::geometry::caster::CasterPolicy;
-use crate::geometry::silhouette::{Orientation, Silhouette, light_facing};
+use crate::geometry::outlines::pieces;
+use crate::geometry::silhouette::{Orientation, Silhouette};
+use crate::geometry::slivers::{Slivers, facing};
 use crate::geometry::volume::ShadowVolume;
 use crate::geometry::wedge::hard_plane;
 use crate::geometry::winding::volume_winding;
 use crate::parts::casters::{self, Examined};
+use crate::parts::volumes::near_cap::{self, CapTriangle};
+use crate::parts::volumes::near_pyramid::NearPyramid;
 use crate::technique::TechniqueError;
 use crate::world::adjacency::EdgeAdjacency;
 use crate::world::light::HardLight;
@@ -38,21 +42,36 @@ pub(crate) struct Silhouettes {
     pub(crate) edges: Vec<SoftEdge>,
     /// How many casters hide the light's centre from the eye.
     pub(crate) eye_count: i32,
+    /// Lit triangles that the near plane may cut away.
+    pub(crate) near_caps: Vec<CapTriangle>,
 }
 
 /// The casters of a scene, examined once for all lights.
 pub(crate) struct SoftCasters<'a> {
     camera: &'a Camera,
+    before_near_plane: NearPyramid,
     examined: Vec<Examined<'a>>,
 }
 
 impl<'a> SoftCasters<'a> {
     /// All casters of `scene`.
-    pub(crate) fn new(scene: &'a Scene, policy: CasterPolicy) -> Result<Self, TechniqueError> {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        size: [u32; 2],
+        policy: CasterPolicy,
+    ) -> Result<Self, TechniqueError> {
         Ok(Self {
             camera: &scene.camera,
+            before_near_plane: NearPyramid::before_near_plane(&scene.camera, size),
             examined: casters::examine(scene, policy)?,
         })
+    }
+
+    /// The size of the largest caster; infinite without any.
+    pub(crate) fn size(&self) -> f64 {
+        let bounds = self.examined.iter().filter_map(|e| e.object.mesh.bounds());
+        let sizes = bounds.map(|(low, high)| (high - low).length());
+        sizes.reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 
     /// Silhouettes seen from `centre`, of all casters together.
@@ -61,6 +80,7 @@ impl<'a> SoftCasters<'a> {
         for caster in self.each(centre) {
             all.edges.extend(caster.edges);
             all.eye_count += caster.eye_count;
+            all.near_caps.extend(caster.near_caps);
         }
         all
     }
@@ -82,7 +102,8 @@ impl<'a> SoftCasters<'a> {
         let light = HardLight::Point(centre);
         let of_piece = |piece: Mesh| {
             let adjacency = EdgeAdjacency::new(piece.triangles());
-            let orientation = Orientation::generalised(&light_facing(&piece, light));
+            let facing = facing(&piece, &adjacency, light, Slivers::WithoutArea);
+            let orientation = Orientation::generalised(&facing);
             let silhouette = Silhouette::new(&piece, &adjacency, &orientation);
             let volume = ShadowVolume::generalised(&piece, &adjacency, light);
             self.of_mesh(&piece, &silhouette, &volume, centre)
@@ -96,8 +117,7 @@ impl<'a> SoftCasters<'a> {
             )
         });
         let all = pieces.map(of_piece);
-        all.filter(|s| !s.edges.is_empty() || s.eye_count != 0)
-            .collect()
+        all.filter(Silhouettes::hides_anything).collect()
     }
 
     fn of_mesh(
@@ -115,7 +135,14 @@ impl<'a> SoftCasters<'a> {
                 .map(|&[a, b]| SoftEdge::new([point(a), point(b)], centre, eye))
                 .collect(),
             eye_count: volume_winding(volume, eye),
+            near_caps: near_cap::cut_away(&self.before_near_plane, mesh, volume.light_cap()),
         }
+    }
+}
+
+impl Silhouettes {
+    fn hides_anything(&self) -> bool {
+        !self.edges.is_empty() || self.eye_count != 0 || !self.near_caps.is_empty()
     }
 }
 

@@ -2,12 +2,14 @@
 
 use glam::DVec3;
 use gnomon_shaders::coverage::{Edge, FlatLight, Image, Projector, SphereLight};
+use gnomon_shaders::soft_volumes::HardPlane;
 
-use crate::geometry::area_light::AreaLight;
+use super::edges::SoftEdge;
+use crate::geometry::area_light::{AreaLight, nearest_on_segment};
 use crate::parts::passes::View;
 use crate::technique::TechniqueError;
 use crate::world::light::{HardLight, Light, LightShape};
-use crate::world::mesh::narrow;
+use crate::world::mesh::{narrow, widen};
 
 /// A light for wedges and for shaders: flat lights once for each side.
 pub(crate) struct SoftLight {
@@ -15,7 +17,18 @@ pub(crate) struct SoftLight {
     pub(crate) centre: DVec3,
     /// Sides to which it shines; none for lights without area.
     pub(crate) sides: Vec<LightSide>,
+    /// What shaders take positions relative to, world space: the centre or, of a far
+    /// light, a place in front of the camera.
+    origin: DVec3,
+    is_far: bool,
 }
+
+/// A light so many times farther than the camera looks, or than the casters are large,
+/// is far: positions relative to its centre would lose digits.
+const FAR: f64 = 64.0;
+/// The share of its distance from the nearest edge below which a light has no extent
+/// for f32.
+const NO_EXTENT: f64 = 1.0 / 16_777_216.0;
 
 /// One side of a flat light, or all of a sphere.
 pub(crate) struct LightSide {
@@ -26,16 +39,20 @@ pub(crate) struct LightSide {
     /// Rows that take a point relative to the centre to the projector's
     /// coordinates.
     rows: [DVec3; 3],
+    /// What edges are relative to.
+    origin: DVec3,
 }
 
 impl SoftLight {
     /// The light numbered `number`; points are lights without sides, and cast
-    /// hard shadows. A sphere is seen as large as it looks, or of its own radius.
+    /// hard shadows. A sphere is `seen` as large as it looks, or of its own radius. The
+    /// light is near or far for casters of the size `casters`.
     pub(crate) fn new(
         technique: &'static str,
         light: &Light,
         number: usize,
         view: &View,
+        casters: f64,
         seen: bool,
     ) -> Result<Self, TechniqueError> {
         let refused = |why: String| TechniqueError::UnsuitableLight {
@@ -47,18 +64,29 @@ impl SoftLight {
         let HardLight::Point(centre) = light.hard() else {
             return Err(refused("it is directional".to_owned()));
         };
+        let (origin, is_far) = origin(view, centre, casters);
+        let mut soft = Self {
+            centre,
+            sides: Vec::new(),
+            origin,
+            is_far,
+        };
+        if extent(&light.shape) <= f64::EPSILON * centre.abs().max_element() {
+            return Ok(soft); // its corners are one point
+        }
         let rows = match light.shape {
-            LightShape::Point { .. } => {
-                let sides = Vec::new();
-                return Ok(Self { centre, sides });
-            }
+            LightShape::Point { .. } => return Ok(soft),
             LightShape::Rectangle { edge_u, edge_v, .. } => square_rows(edge_u, edge_v),
             LightShape::Disc { normal, radius, .. } => disc_rows(normal, radius),
             LightShape::Sphere { .. } => [DVec3::X, DVec3::Y, DVec3::Z],
             _ => return Err(refused("it is a polygon".to_owned())),
         };
         let area = AreaLight::new(&light.shape).map_err(|e| refused(e.to_string()))?;
-        let at = narrow(view.relative(centre));
+        let at = narrow(view.relative(origin));
+        let from_centre = |rows: [DVec3; 3]| {
+            let offset = rows.map(|r| r.dot(origin - centre));
+            is_far.then(|| narrow(DVec3::from_array(offset)))
+        };
         let image = match light.shape {
             LightShape::Rectangle { .. } => Image::Square,
             _ => Image::Disc,
@@ -66,21 +94,25 @@ impl SoftLight {
         let flat = |rows: [DVec3; 3], area: AreaLight| LightSide {
             area,
             projector: Projector::Flat(FlatLight {
-                centre: at,
+                origin: at,
+                far: from_centre(rows),
                 axes: rows.map(narrow),
                 image,
             }),
             rows,
+            origin,
         };
-        let sides = match area {
+        soft.sides = match area {
             AreaLight::Sphere { radius, .. } => vec![LightSide {
                 area,
                 projector: Projector::Sphere(SphereLight {
-                    centre: at,
+                    origin: at,
+                    far: from_centre(rows),
                     radius: radius as f32,
                     seen,
                 }),
                 rows,
+                origin,
             }],
             area => {
                 let [u, v, n] = rows;
@@ -88,15 +120,68 @@ impl SoftLight {
                 vec![flat(rows, area), flat([u, v, -n], other)]
             }
         };
-        Ok(Self { centre, sides })
+        Ok(soft)
+    }
+
+    /// What shaders take positions relative to, relative to the view's origin.
+    pub(crate) fn shader_origin(&self, view: &View) -> [f32; 3] {
+        narrow(view.relative(self.origin))
+    }
+
+    /// Whether hard planes have an offset.
+    pub(crate) fn is_far(&self) -> bool {
+        self.is_far
+    }
+
+    /// The plane of an edge as shaders have it.
+    pub(crate) fn plane(&self, edge: &SoftEdge) -> HardPlane {
+        let offset = || widen(edge.normal).dot(self.origin - edge.ends[0]);
+        HardPlane {
+            normal: edge.normal,
+            // Through the centre; a far one is nothing to take differences from.
+            offset: if self.is_far { offset() as f32 } else { 0.0 },
+        }
+    }
+
+    /// Whether f32 cannot tell the light from a point at any of the edges.
+    pub(crate) fn has_no_extent_for(&self, edges: &[SoftEdge]) -> bool {
+        let Some(side) = self.sides.first() else {
+            return false;
+        };
+        let reach = side.area.bounding_radius() / NO_EXTENT;
+        let distance =
+            |e: &SoftEdge| (nearest_on_segment(e.ends, self.centre) - self.centre).length();
+        !edges.is_empty() && edges.iter().all(|e| distance(e) > reach)
+    }
+}
+
+/// The centre, or a place in the scene if that is far; and whether it is.
+fn origin(view: &View, centre: DVec3, casters: f64) -> (DVec3, bool) {
+    let camera = view.camera();
+    let looks = camera.target - camera.eye;
+    let scale = looks.length().min(casters);
+    if (centre - camera.eye).length() <= FAR * scale {
+        return (centre, false);
+    }
+    // As shaders have it, to the bit.
+    let seen = camera.eye + looks.normalize_or_zero() * scale;
+    let place = widen(narrow(view.relative(seen)));
+    (view.absolute(place), true)
+}
+
+/// The length of the light's shape.
+fn extent(shape: &LightShape) -> f64 {
+    match shape {
+        LightShape::Rectangle { edge_u, edge_v, .. } => edge_u.length().max(edge_v.length()),
+        LightShape::Disc { radius, .. } | LightShape::Sphere { radius, .. } => *radius,
+        _ => f64::INFINITY,
     }
 }
 
 impl LightSide {
     /// A world-space edge in the projector's coordinates, rounded once.
     pub(crate) fn edge(&self, ends: [DVec3; 2]) -> Edge {
-        let centre = self.area.centre();
-        ends.map(|e| narrow(DVec3::from_array(self.rows.map(|r| r.dot(e - centre)))))
+        ends.map(|e| narrow(DVec3::from_array(self.rows.map(|r| r.dot(e - self.origin)))))
     }
 }
 

@@ -91,12 +91,13 @@ impl SoftSettings {
         scene: &Scene,
         k: u32,
     ) -> Result<SceneWedges, TechniqueError> {
-        let casters = SoftCasters::new(scene, self.open_casters)?;
+        let casters = SoftCasters::new(scene, [1; 2], self.open_casters)?;
         let view = View::new(&scene.camera, [1; 2]);
         let mut meshes = Vec::new();
         for number in self.frame.lights(scene)? {
             for part in split(name, &scene.lights[number], number, k)? {
-                let light = SoftLight::new(name, &part, number, &view, self.seen())?;
+                let light =
+                    SoftLight::new(name, &part, number, &view, casters.size(), self.seen())?;
                 meshes.extend(self.meshes(&casters, &light));
             }
         }

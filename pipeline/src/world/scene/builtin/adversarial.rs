@@ -22,7 +22,8 @@ pub(super) fn near_plane() -> Scene {
 }
 
 /// A stack of plates whose shadows nest: the count on the floor climbs to 300,
-/// with a ring of exactly 256.
+/// with a ring of exactly 256, which is light where an 8-bit stencil wraps
+/// (`overflow=wrap`).
 pub(super) fn nested_300() -> Scene {
     let light = Light::horizontal_square(DVec3::new(0.2, 9.0, 0.3), 1.0);
     let camera = Camera::look_at([3.0, 1.8, 7.6], [0.0, 2.1, 0.0]);

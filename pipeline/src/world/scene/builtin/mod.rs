@@ -79,7 +79,7 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),
     entry("adversarial-near-plane", "the near plane cuts a volume: z-pass needs depth clamp", adversarial::near_plane),
-    entry("adversarial-nested-300", "300 nested volumes: an 8-bit stencil wraps, 256 alias to lit", adversarial::nested_300),
+    entry("adversarial-nested-300", "300 nested volumes: more than an 8-bit stencil counts; 256 would be light if it wrapped", adversarial::nested_300),
     entry("adversarial-tiny", "a small still life, coordinates x 1e-4", adversarial::tiny),
     entry("adversarial-huge", "a small still life, coordinates x 1e4", adversarial::huge),
     entry("adversarial-offset", "a small still life, 1e5 away from the origin", adversarial::offset),

@@ -11,13 +11,26 @@ use crate::geometry::silhouette::Orientation;
 use crate::world::adjacency::{Edge, EdgeAdjacency};
 use crate::world::mesh::{Mesh, Shading};
 
-/// The connected pieces of the triangles that `orientation` counts, ordered by
-/// their first triangle; triangles are connected across edges.
-pub(super) fn pieces(
+/// The connected pieces of the triangles that `orientation` counts, as meshes of
+/// their own.
+pub(crate) fn pieces(
     mesh: &Mesh,
     adjacency: &EdgeAdjacency,
     orientation: &Orientation,
 ) -> Vec<Mesh> {
+    let pieces = piece_triangles(mesh, adjacency, orientation).into_iter();
+    pieces
+        .filter_map(|triangles| compact(mesh, triangles))
+        .collect()
+}
+
+/// The triangles of each connected piece of those that `orientation` counts, ordered
+/// by their first triangle; triangles are connected across edges.
+pub(crate) fn piece_triangles(
+    mesh: &Mesh,
+    adjacency: &EdgeAdjacency,
+    orientation: &Orientation,
+) -> Vec<Vec<[u32; 3]>> {
     let counted = |t: usize| orientation.of_triangles()[t] != 0;
     let mut roots = Roots::new(mesh.triangles().len());
     for edge in adjacency.edges() {
@@ -35,10 +48,8 @@ pub(super) fn pieces(
     for t in (0..mesh.triangles().len()).filter(|t| counted(*t)) {
         triangles_of[roots.of(t)].push(mesh.triangles()[t]);
     }
-    let pieces = triangles_of.into_iter().filter(|t| !t.is_empty());
-    pieces
-        .filter_map(|triangles| compact(mesh, triangles))
-        .collect()
+    triangles_of.retain(|t| !t.is_empty());
+    triangles_of
 }
 
 /// Pairs of triangles that continue each other across an edge of many: one that
@@ -58,7 +69,7 @@ fn across(edge: &Edge<'_>, orientation: &Orientation) -> impl Iterator<Item = [u
 }
 
 /// The triangles with only the positions that they use.
-fn compact(mesh: &Mesh, triangles: Vec<[u32; 3]>) -> Option<Mesh> {
+pub(crate) fn compact(mesh: &Mesh, triangles: Vec<[u32; 3]>) -> Option<Mesh> {
     let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
     used.sort_unstable();
     used.dedup();

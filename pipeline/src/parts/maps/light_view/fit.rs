@@ -10,9 +10,10 @@
 use glam::DVec3;
 use gnomon_shaders::light_view::{Projection, ViewRegion};
 
-use super::convex::{TangentBox, clip};
+use super::convex::TangentBox;
 use super::frame::{LightExtent, LightFrame};
 use super::surroundings::Surroundings;
+use crate::scene::clip;
 
 /// What a picture is fitted to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

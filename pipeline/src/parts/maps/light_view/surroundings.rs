@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-use super::convex::clip;
 use crate::world::mesh::Mesh;
-use crate::world::scene::{Camera, Scene};
+use crate::world::scene::{Pyramid, Scene};
 
 /// Receivers and casters of a scene, gathered once for all its lights.
 pub(crate) struct Surroundings<'a> {
@@ -82,42 +81,6 @@ impl<'a> Surroundings<'a> {
         let count = self.corners.len() as f64;
         let sum = self.corners.iter().sum::<DVec3>();
         (count > 0.0).then(|| sum / count)
-    }
-}
-
-/// What a camera sees, as planes.
-struct Pyramid {
-    eye: DVec3,
-    near: f64,
-    forward: DVec3,
-    /// Normals of the sides, inwards.
-    sides: [DVec3; 4],
-}
-
-impl Pyramid {
-    fn new(camera: &Camera, [width, height]: [u32; 2]) -> Self {
-        let [right, up, forward] = camera.basis();
-        let tan = camera.tan_half_fov();
-        let across = forward * (tan * f64::from(width) / f64::from(height));
-        let above = forward * tan;
-        Self {
-            eye: camera.eye,
-            near: camera.near,
-            forward,
-            sides: [across + right, across - right, above + up, above - up],
-        }
-    }
-
-    fn clip(&self, polygon: &mut Vec<DVec3>, scratch: &mut Vec<DVec3>) {
-        clip(polygon, scratch, |p| {
-            self.forward.dot(p - self.eye) - self.near
-        });
-        for side in self.sides {
-            if polygon.is_empty() {
-                return;
-            }
-            clip(polygon, scratch, |p| side.dot(p - self.eye));
-        }
     }
 }
 

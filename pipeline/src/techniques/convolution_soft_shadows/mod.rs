@@ -49,7 +49,7 @@ use crate::parts::maps::light_view::{
     CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of,
 };
 use crate::parts::maps::lit_tiles::{FurtherLights, LitTiles};
-use crate::parts::maps::mapped::{self, Notes, Said};
+use crate::parts::maps::mapped::{self, Hints, Notes, Said};
 use crate::parts::passes::{self, LitTest, SceneDraws, Targets};
 use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
 use crate::technique::{Frame, ParamInfo, Params, Technique, TechniqueError, Warning};
@@ -205,7 +205,8 @@ impl Shadows<'_> {
             }
         }
         let Settings { views, fitting, .. } = self.settings;
-        let views = views_of(light, &self.around, views, &fitting);
+        let hints = Hints::of(views, fitting.near);
+        let found = views_of(light, &self.around, views, &fitting);
         let geometry = CasterGeometry::new(
             self.scene,
             &self.around,
@@ -213,7 +214,8 @@ impl Shadows<'_> {
             light.reference(&self.around),
         );
         let (mut list, mut said) = (Vec::new(), Said::default());
-        for fitted in &views {
+        said.missing = found.missing;
+        for fitted in &found.views {
             said.add(fitted, self.offset(fitted), self.settings.side);
             let (passes, draw) = self.view_passes(light, fitted, tiles, &geometry, label);
             let first = list.is_empty();
@@ -223,7 +225,7 @@ impl Shadows<'_> {
         if list.is_empty() {
             list.push(self.shadow_pass(label("look-up"), true, Vec::new()));
         }
-        said.into_notes(0.0, label, notes);
+        said.into_notes(0.0, hints, label, notes);
         list
     }
 

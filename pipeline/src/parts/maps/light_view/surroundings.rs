@@ -76,6 +76,12 @@ impl<'a> Surroundings<'a> {
         self.owners.iter().copied().zip(self.receivers())
     }
 
+    /// Largest distance of a receiver's corner from a point.
+    pub(super) fn radius(&self, from: DVec3) -> f64 {
+        let distances = self.corners.iter().map(|p| (*p - from).length());
+        distances.fold(0.0, f64::max)
+    }
+
     /// Mean of the receivers' corners; `None` where nothing is seen.
     pub(super) fn middle(&self) -> Option<DVec3> {
         let count = self.corners.len() as f64;

@@ -28,7 +28,7 @@ fn viewed(scene: &Scene) -> ViewedLight {
 
 fn views(scene: &Scene, views: Views) -> Vec<Fitted> {
     let around = Surroundings::new(scene, PICTURE);
-    views_of(&viewed(scene), &around, views, &fitting(FitTo::Casters))
+    views_of(&viewed(scene), &around, views, &fitting(FitTo::Casters)).views
 }
 
 /// The stored depths of a view, rows from the top.
@@ -171,7 +171,7 @@ fn what_is_outside_the_picture_is_empty() {
 fn fitting_to_casters_is_tighter_and_to_receivers_holds_them() {
     let scene = builtin::build("cylinder").unwrap();
     let around = Surroundings::new(&scene, PICTURE);
-    let of = |to| views_of(&viewed(&scene), &around, Views::Auto, &fitting(to));
+    let of = |to| views_of(&viewed(&scene), &around, Views::Auto, &fitting(to)).views;
     let ([casters], [receivers]) = (&of(FitTo::Casters)[..], &of(FitTo::Receivers)[..]) else {
         panic!("one view each");
     };
@@ -281,7 +281,7 @@ fn casters_at_the_light_are_counted() {
             near,
             ..fitting(FitTo::Casters)
         };
-        views_of(&viewed(&scene), &around, Views::Cube, &fitting)
+        views_of(&viewed(&scene), &around, Views::Cube, &fitting).views
     };
     let cut = |near| of(near).iter().map(|v| v.cut).sum::<usize>();
     assert!(cut(Some(0.04)) > 0);

@@ -14,7 +14,7 @@ use gnomon_shaders::light_view::LightMapping;
 use gnomon_shaders::shadow_maps::{Shadow, ShadowTo};
 use gnomon_shaders::transform::FullScreen;
 
-pub(crate) use notes::{Notes, Said};
+pub(crate) use notes::{Hints, Notes, Said};
 pub(crate) use params::MapParams;
 pub(crate) use params::{
     BIAS, FIT, MAP_SIZE, Margin, NEAR, SKIP, SLOPE_BIAS, VIEW, pattern, square_side,
@@ -184,7 +184,9 @@ impl OneLight<'_> {
         let mut said = Said::default();
         for light in &sources.lights {
             let maps = self.maps;
-            for fitted in views_of(light, self.around, maps.views, &maps.fitting) {
+            let found = views_of(light, self.around, maps.views, &maps.fitting);
+            said.missing += found.missing;
+            for fitted in found.views {
                 let bias = maps.bias(&fitted, self.margin);
                 said.add(&fitted, bias, maps.fitting.size);
                 let label = (self.label)("light view");
@@ -204,7 +206,9 @@ impl OneLight<'_> {
         if passes.is_empty() {
             passes.push(self.look_up(load, None));
         }
-        said.into_notes(self.map.slope, self.label, notes);
+        let (views, near) = (self.maps.views, self.maps.fitting.near);
+        let hints = Hints::of(views, near);
+        said.into_notes(self.map.slope, hints, self.label, notes);
         passes
     }
 

@@ -1,6 +1,6 @@
 //! What is said of a frame's light views: figures and warnings.
 
-use super::super::light_view::Fitted;
+use super::super::light_view::{Fitted, Views};
 use super::super::lit_tiles::LitTiles;
 use crate::technique::{Figure, Warning};
 
@@ -21,9 +21,36 @@ impl Notes {
     }
 }
 
+/// What can be done about views that do not hold what they should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Hints {
+    cut: &'static str,
+    limited: &'static str,
+}
+
+impl Hints {
+    /// With these parameters. A cube looks all round, so that only what is next to
+    /// the light is beyond it, where a smaller near distance would not help: views
+    /// would have to be wider still.
+    pub(crate) fn of(views: Views, near: Option<f64>) -> Self {
+        Self {
+            cut: match near {
+                Some(_) => "set near to less, or to auto",
+                None => "set near to less than the figure `near`, or move them off the light",
+            },
+            limited: match views {
+                Views::Planar => "set view to cube or auto",
+                Views::Auto | Views::Cube => "move them off the light",
+            },
+        }
+    }
+}
+
 /// What is to be said of a light's views, together.
 #[derive(Default)]
 pub(crate) struct Said {
+    /// Views that there should be and are not.
+    pub(crate) missing: usize,
     views: usize,
     cut: usize,
     limited: usize,
@@ -46,7 +73,14 @@ impl Said {
     }
 
     /// `label` adds the light's number where there are several.
-    pub(crate) fn into_notes(self, slope: f64, label: &dyn Fn(&str) -> String, notes: &mut Notes) {
+    pub(crate) fn into_notes(
+        self,
+        slope: f64,
+        hints: Hints,
+        label: &dyn Fn(&str) -> String,
+        notes: &mut Notes,
+    ) {
+        self.warn(hints, label, notes);
         let mut figure = |name: &str, value: f64| {
             let name = label(name);
             notes.figures.push(Figure { name, value });
@@ -59,27 +93,35 @@ impl Said {
             figure("near", near);
             figure("far", far);
         }
-        let mut warn = |code, count: usize, what: &str| {
-            if count > 0 {
-                let message = format!("{}: {count} {what}", label("light view"));
-                notes.warnings.push(Warning {
-                    code,
-                    count,
-                    message,
-                });
-            }
+    }
+
+    /// Where views are limited, what the near distance cuts is beyond them as well:
+    /// one hint is enough.
+    fn warn(&self, hints: Hints, label: &dyn Fn(&str) -> String, notes: &mut Notes) {
+        let mut warn = |code, count: usize, what: &str, hint: &str| {
+            let message = format!("{}: {count} {what}; {hint}", label("light view"));
+            notes.warnings.push(Warning {
+                code,
+                count,
+                message,
+            });
         };
-        warn(
-            "casters-at-near-distance",
-            self.cut,
-            "triangles of casters reach nearer to the light than is looked at and are cut there; \
-             set near to less",
-        );
-        warn(
-            "view-limited",
-            self.limited,
-            "views do not hold all casters that matter, for those are too near to the light or \
-             beside it; try view=cube or a larger near",
-        );
+        let limited = self.limited + self.missing;
+        if limited > 0 {
+            warn(
+                "view-limited",
+                limited,
+                "views do not hold all casters that matter, for those are too near to the light \
+                 or beside it",
+                hints.limited,
+            );
+        } else if self.cut > 0 {
+            warn(
+                "casters-at-near-distance",
+                self.cut,
+                "triangles of casters reach nearer to the light than is looked at and are cut there",
+                hints.cut,
+            );
+        }
     }
 }

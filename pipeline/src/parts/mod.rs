@@ -3,6 +3,7 @@
 //! are made of.
 
 pub(crate) mod casters;
+pub(crate) mod far_surface;
 pub(crate) mod horizon;
 pub mod light_samples;
 pub(crate) mod maps;

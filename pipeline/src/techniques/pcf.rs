@@ -65,11 +65,12 @@ impl Technique for Pcf {
     ) -> Result<Frame, TechniqueError> {
         let taps = taps(self.name(), params)?;
         let cubic = params.get(KERNEL.name) == "bicubic";
-        let width = if cubic { 4 } else { taps };
-        // As far as the farthest tap.
+        // A slope bias would have to grow with the kernel, and part shadows from their
+        // casters by as much.
         let margin = Margin {
             bias: 0.5,
-            slope: f64::from(width) / 2.0,
+            slope: 0.0,
+            planes: true,
         };
         let mapped = Mapped {
             name: self.name(),

@@ -66,6 +66,7 @@ const SEED: ParamInfo = ParamInfo {
 const MARGIN: Margin = Margin {
     bias: 0.5,
     slope: 1.0,
+    planes: false,
 };
 
 impl Technique for Pcss {

@@ -18,7 +18,7 @@ pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
 pub use placed::PlacedError;
-pub(crate) use pyramid::{Pyramid, clip};
+pub(crate) use pyramid::{Pyramid, clip, clip_with};
 pub use source::SceneSource;
 
 pub use crate::world::material::{Material, MaterialPart};

@@ -11,12 +11,23 @@ pub(crate) fn clip(
     scratch: &mut Vec<DVec3>,
     side: impl Fn(DVec3) -> f64,
 ) {
+    clip_with(polygon, scratch, side, |a, b, share| a + (b - a) * share);
+}
+
+/// The same of vertices that are more than positions: `between` gives what is that share
+/// of the way from one to another.
+pub(crate) fn clip_with<V: Copy>(
+    polygon: &mut Vec<V>,
+    scratch: &mut Vec<V>,
+    side: impl Fn(V) -> f64,
+    between: impl Fn(V, V, f64) -> V,
+) {
     scratch.clear();
     for (k, &b) in polygon.iter().enumerate() {
         let a = polygon[(k + polygon.len() - 1) % polygon.len()];
         let (from, to) = (side(a), side(b));
         if (from < 0.0) != (to < 0.0) {
-            scratch.push(a + (b - a) * (from / (from - to)));
+            scratch.push(between(a, b, from / (from - to)));
         }
         if to >= 0.0 {
             scratch.push(b);
@@ -47,6 +58,33 @@ impl Pyramid {
             forward,
             sides: [across + right, across - right, above + up, above - up],
         }
+    }
+
+    /// In a picture that is `factor` times as wide and as high, and from half the near
+    /// distance on.
+    pub(crate) fn wider(camera: &Camera, size: [u32; 2], factor: f64) -> Self {
+        let seen = Self::new(camera, size);
+        let sides = seen
+            .sides
+            .map(|s| s + seen.forward * (s.dot(seen.forward) * (factor - 1.0)));
+        Self {
+            near: camera.near * 0.5,
+            sides,
+            ..seen
+        }
+    }
+
+    /// Its planes, as functions that are not negative inside.
+    pub(crate) fn sides(&self) -> [impl Fn(DVec3) -> f64; 5] {
+        let off = |normal: DVec3, least: f64| move |p: DVec3| normal.dot(p - self.eye) - least;
+        let [a, b, c, d] = self.sides;
+        [
+            off(self.forward, self.near),
+            off(a, 0.0),
+            off(b, 0.0),
+            off(c, 0.0),
+            off(d, 0.0),
+        ]
     }
 
     /// The same from the eye on.

@@ -12,7 +12,7 @@ use glam::DVec3;
 use gnomon_shaders::light_view::{Projection, ViewRegion};
 
 use super::convex::TangentBox;
-use super::fit::{Facet, receivers_beyond};
+use super::fit::{Facet, clipped};
 use super::frame::{LightExtent, LightFrame};
 use super::surroundings::Surroundings;
 use crate::world::scene::clip;
@@ -30,7 +30,7 @@ pub(super) struct Between {
     radius: f64,
     /// Half widths of the light along the picture's axes.
     halves: [f64; 2],
-    /// Receivers' corners beyond the near distance.
+    /// Seen receivers' corners beyond the near distance.
     receivers: Vec<DVec3>,
     /// Bounds of their places.
     places: TangentBox,
@@ -51,7 +51,8 @@ impl Between {
         [near, farthest]: [f64; 2],
     ) -> Self {
         let mut receivers = Vec::new();
-        receivers_beyond(around, &frame, region, near, |polygon| {
+        let seen = around.seen_receivers();
+        clipped(seen, &frame, region, near, |polygon| {
             receivers.extend_from_slice(polygon);
         });
         let low = receivers.iter().fold(DVec3::INFINITY, |a, p| a.min(*p));

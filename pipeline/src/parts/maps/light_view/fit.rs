@@ -297,10 +297,21 @@ pub(super) fn receivers_beyond(
     frame: &LightFrame,
     region: ViewRegion,
     near: f64,
+    visit: impl FnMut(&[DVec3]),
+) {
+    clipped(around.receivers(), frame, region, near, visit);
+}
+
+/// The same of some polygons.
+pub(super) fn clipped<'a>(
+    receivers: impl Iterator<Item = &'a [DVec3]>,
+    frame: &LightFrame,
+    region: ViewRegion,
+    near: f64,
     mut visit: impl FnMut(&[DVec3]),
 ) {
     let (mut polygon, mut scratch) = (Vec::new(), Vec::new());
-    for receiver in around.receivers() {
+    for receiver in receivers {
         polygon.clear();
         polygon.extend(receiver.iter().map(|p| frame.local(*p)));
         if polygon.iter().any(|p| p.z < near) {

@@ -138,18 +138,25 @@ impl ViewedLight {
         Ok(Self { frame, extent })
     }
 
-    /// A point near the light, or near what is lit where the light has no place or
-    /// is far away.
+    /// Whether it has no place, or is far away from what is lit.
+    pub(crate) fn is_far(&self, around: &Surroundings<'_>) -> bool {
+        self.frame.projection == Projection::Orthographic || self.far_middle(around).is_some()
+    }
+
+    /// A point near the light, or near what is lit where the light is far.
     pub(crate) fn reference(&self, around: &Surroundings<'_>) -> DVec3 {
-        let centre = self.frame.centre;
-        let Some(middle) = around.middle() else {
-            return centre;
+        let middle = match self.frame.projection {
+            Projection::Perspective => self.far_middle(around),
+            Projection::Orthographic => around.middle(),
         };
-        let far_away = || (middle - centre).length() > FAR_AWAY * around.radius(middle);
-        match self.frame.projection {
-            Projection::Perspective if !far_away() => centre,
-            _ => middle,
-        }
+        middle.unwrap_or(self.frame.centre)
+    }
+
+    /// The middle of what is lit, if the light's centre is far away from it.
+    fn far_middle(&self, around: &Surroundings<'_>) -> Option<DVec3> {
+        let middle = around.middle()?;
+        let distance = (middle - self.frame.centre).length();
+        (distance > FAR_AWAY * around.radius(middle)).then_some(middle)
     }
 }
 

@@ -9,6 +9,7 @@ use gnomon_raster::{
     RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
 };
 use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth, Projection, ViewRegion};
+use gnomon_shaders::shadow_maps::ReceiverPlanes;
 use gnomon_shaders::surface::PixelRays;
 use gnomon_shaders::transform::{ClipFromWorld, Facets};
 
@@ -196,7 +197,7 @@ impl Fitted {
         }
         // From the middle of the picture, with axes across that keep to it.
         let [x, y] = self.middle;
-        let middle = self.frame.centre + (along + right * x + down * y) * self.base;
+        let middle = self.frame.centre + self.middle_ray() * self.base;
         LightMapping {
             centre: narrow(view.relative(middle)),
             axes: [right - along * x, down - along * y, along].map(narrow),
@@ -204,6 +205,26 @@ impl Fitted {
             base: self.base as f32,
             ..mapping
         }
+    }
+
+    /// How receivers' planes are seen.
+    pub(crate) fn planes(&self) -> ReceiverPlanes {
+        let mapped_from = match (self.base > 0.0, self.region) {
+            (false, _) => DVec3::ZERO,
+            (true, ViewRegion::Face) => self.frame.axes[2] * self.base,
+            (true, ViewRegion::Front) => self.middle_ray() * self.base,
+        };
+        ReceiverPlanes {
+            axes: self.frame.axes.map(narrow),
+            base: narrow(mapped_from),
+        }
+    }
+
+    /// Through the middle of the picture, one long along the axis.
+    fn middle_ray(&self) -> DVec3 {
+        let [right, down, along] = self.frame.axes;
+        let [x, y] = self.middle;
+        along + right * x + down * y
     }
 
     fn depth_range(&self) -> DepthRange {

@@ -1,9 +1,13 @@
 //! What views are fitted to: the receivers that the camera sees and the casters.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
+use crate::world::adjacency::EdgeAdjacency;
 use crate::world::mesh::Mesh;
 use crate::world::scene::{Pyramid, Scene};
+use crate::geometry::winding::mesh_winding;
 
 /// Receivers and casters of a scene, gathered once for all its lights.
 pub(crate) struct Surroundings<'a> {
@@ -15,6 +19,9 @@ pub(crate) struct Surroundings<'a> {
     owners: Vec<Owner>,
     /// Casters: number in the scene, and mesh.
     pub(super) casters: Vec<(usize, &'a Mesh)>,
+    scene: &'a Scene,
+    /// Whether each polygon is on the far side of its object; found when asked for.
+    hidden: OnceLock<Vec<bool>>,
 }
 
 /// A triangle of a scene.
@@ -34,6 +41,8 @@ impl<'a> Surroundings<'a> {
             ends: Vec::new(),
             owners: Vec::new(),
             casters: Vec::new(),
+            scene,
+            hidden: OnceLock::new(),
         };
         let pyramid = Pyramid::new(&scene.camera, size);
         for (number, object) in scene.objects.iter().enumerate() {
@@ -76,6 +85,26 @@ impl<'a> Surroundings<'a> {
         self.owners.iter().copied().zip(self.receivers())
     }
 
+    /// The same without those on the far side of a closed object, which are not seen.
+    pub(super) fn seen_receivers(&self) -> impl Iterator<Item = &[DVec3]> {
+        let hidden = self.hidden.get_or_init(|| self.find_hidden());
+        let all = self.receivers().zip(hidden);
+        all.filter(|(_, hidden)| !**hidden)
+            .map(|(polygon, _)| polygon)
+    }
+
+    fn find_hidden(&self) -> Vec<bool> {
+        let eye = self.scene.camera.eye;
+        let objects = self.scene.objects.iter();
+        let outwards: Vec<f64> = objects.map(|o| outwards(&o.mesh, eye)).collect();
+        let hidden = |owner: &Owner| {
+            let mesh = &self.scene.objects[owner.object].mesh;
+            let [a, b, c] = mesh.corners(owner.triangle);
+            outwards[owner.object] * (b - a).cross(c - a).dot(eye - a) < 0.0
+        };
+        self.owners.iter().map(hidden).collect()
+    }
+
     /// Largest distance of a receiver's corner from a point.
     pub(super) fn radius(&self, from: DVec3) -> f64 {
         let distances = self.corners.iter().map(|p| (*p - from).length());
@@ -87,6 +116,17 @@ impl<'a> Surroundings<'a> {
         let count = self.corners.len() as f64;
         let sum = self.corners.iter().sum::<DVec3>();
         (count > 0.0).then(|| sum / count)
+    }
+}
+
+/// 1 where the mesh's triangles face outwards, -1 where they face inwards; 0 where it
+/// is open or the eye is inside, so that both sides may be seen.
+fn outwards(mesh: &Mesh, eye: DVec3) -> f64 {
+    let edges = EdgeAdjacency::new(mesh.triangles());
+    if edges.closedness(mesh).is_closed() && mesh_winding(mesh, eye) == 0 {
+        mesh.signed_volume().signum()
+    } else {
+        0.0
     }
 }
 

@@ -34,6 +34,8 @@ pub(crate) struct LookUp<'a> {
     light: &'a ViewedLight,
     mapping: LightMapping,
     bias: f64,
+    /// Whether texels are held against receivers' planes.
+    planes: bool,
     /// Of all the light's points, where it is looked at from several.
     share: f32,
 }
@@ -50,6 +52,7 @@ impl LookUp<'_> {
         Shadow {
             mapping: self.mapping,
             bias: self.bias as f32,
+            planes: self.planes.then(|| self.fitted.planes()),
             filter,
             to: ShadowTo::Visibility,
         }
@@ -72,6 +75,11 @@ pub(crate) struct Sources {
 }
 
 impl Sources {
+    /// Whether receivers tell the light's place from a direction by a few digits only.
+    fn are_far(&self, around: &Surroundings<'_>) -> bool {
+        self.lights.first().is_some_and(|l| l.is_far(around))
+    }
+
     /// The light's centre for all of it.
     pub(crate) fn centre(
         technique: &'static str,
@@ -107,19 +115,26 @@ impl Mapped<'_> {
         let lights = passes::lights(self.scene, self.params)?;
         let mut recording = Recording::default();
         let targets = Targets::create(self.size, self.params, &mut recording)?;
-        let positions = Positions::create(self.size, &mut recording)?;
+        let around = Surroundings::new(self.scene, self.size);
+        let sources = lights.iter().map(|l| sources(*l));
+        let sources = sources.collect::<Result<Vec<_>, _>>()?;
+        let by_planes = |s: &Sources| self.margin.planes || s.are_far(&around);
+        let positions = match sources.iter().any(by_planes) {
+            true => Positions::with_planes(self.size, &mut recording)?,
+            false => Positions::create(self.size, &mut recording)?,
+        };
         let [width, height] = self.size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
         let visibility = VisibilityTexture::red(recording.create(&desc)?);
         let mut map = LightMap::create(maps.fitting.size, &mut recording)?;
-        map.slope = maps.slope_bias.unwrap_or(self.margin.slope);
         let draws = SceneDraws::new(self.scene, self.size, self.params);
-        let around = Surroundings::new(self.scene, self.size);
         let mut list = vec![draws.ambient_pass_with_positions(&targets, &positions)];
         let mut notes = Notes::default();
         let further = FurtherLights::new(self.scene, &around, &draws.view, &lights, maps.skip);
-        for &light in lights.iter().rev() {
-            let sources = sources(light)?;
+        for (&light, sources) in lights.iter().zip(&sources).rev() {
+            let planes = by_planes(sources);
+            let slope = if planes { 0.0 } else { self.margin.slope };
+            map.slope = maps.slope_bias.unwrap_or(slope);
             let tiles = further.tiles(light);
             let one = OneLight {
                 scene: self.scene,
@@ -128,12 +143,13 @@ impl Mapped<'_> {
                 maps: &maps,
                 map,
                 positions,
+                planes,
                 visibility,
                 margin: self.margin,
                 tiles: tiles.as_ref(),
                 label: &|what| passes::label(what, light, &lights),
             };
-            list.extend(one.passes(&sources, &shader, &mut notes));
+            list.extend(one.passes(sources, &shader, &mut notes));
             let label = |what: &str| passes::label(what, light, &lights);
             let shone = &self.scene.lights[light];
             let horizon = Horizon::wanted(self.name, light, shone, false, self.params)?;
@@ -156,6 +172,8 @@ struct OneLight<'a> {
     maps: &'a MapParams,
     map: LightMap,
     positions: Positions,
+    /// Whether texels are held against receivers' planes.
+    planes: bool,
     visibility: VisibilityTexture,
     margin: Margin,
     /// Where shadows matter; `None`: everywhere.
@@ -196,6 +214,7 @@ impl OneLight<'_> {
                     light,
                     mapping: fitted.mapping(self.view, maps.fitting.size),
                     bias,
+                    planes: self.planes,
                     share: 1.0 / sources.lights.len() as f32,
                 };
                 let stage = shader(&look_up);
@@ -227,10 +246,12 @@ impl OneLight<'_> {
                 depth_stencil: DepthStencilState::default(),
                 color_targets: vec![blend],
             };
-            let bindings = [self.positions.texture, self.map.depth].map(binding);
+            let planes = self.positions.planes.filter(|_| self.planes);
+            let textures = [self.positions.texture, self.map.depth].into_iter();
+            let bindings = textures.chain(planes).map(binding).collect();
             match self.tiles {
-                Some(tiles) => tiles.draw(pipeline, bindings.to_vec()),
-                None => full_screen(pipeline, bindings.to_vec()),
+                Some(tiles) => tiles.draw(pipeline, bindings),
+                None => full_screen(pipeline, bindings),
             }
         };
         RenderPass {

@@ -47,7 +47,7 @@ impl Positions {
         size: [u32; 2],
         recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
-        let positions = Self::create(size, textures)?;
+        let positions = Self::create(size, recording)?;
         let desc = TextureDescriptor::d2("planes", Format::Rgba32Float, size[0], size[1]);
         Ok(Self {
             planes: Some(recording.create(&desc)?),

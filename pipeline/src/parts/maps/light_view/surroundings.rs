@@ -4,10 +4,10 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
+use crate::geometry::winding::mesh_winding;
 use crate::world::adjacency::EdgeAdjacency;
 use crate::world::mesh::Mesh;
 use crate::world::scene::{Pyramid, Scene};
-use crate::geometry::winding::mesh_winding;
 
 /// Receivers and casters of a scene, gathered once for all its lights.
 pub(crate) struct Surroundings<'a> {

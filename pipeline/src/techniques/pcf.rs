@@ -65,12 +65,13 @@ impl Technique for Pcf {
     ) -> Result<Frame, TechniqueError> {
         let taps = taps(self.name(), params)?;
         let cubic = params.get(KERNEL.name) == "bicubic";
-        // A slope bias would have to grow with the kernel, and part shadows from their
-        // casters by as much.
+        let width = if cubic { 4 } else { taps };
+        // Over a kernel a slope bias would have to be as wide as it is, and part shadows
+        // from their casters by as much.
         let margin = Margin {
             bias: 0.5,
-            slope: 0.0,
-            planes: true,
+            slope: if width > 1 { 0.0 } else { 0.5 },
+            planes: width > 1,
         };
         let mapped = Mapped {
             name: self.name(),

@@ -133,6 +133,19 @@ fn a_scene_in_other_units_is_the_same_picture() {
     }
 }
 
+/// Parallel light has no place, but what it shadows has a size.
+#[test]
+fn a_sun_over_a_scene_in_other_units_is_the_same() {
+    let text = include_str!("views/low-sun.toml").replace("0.12", "0.6");
+    let [_, dark] = counts(&shown(&parsed(&text), "shadow-map", &[]));
+    assert!(dark > 100, "{dark}");
+    for factor in [1e-6, 1e-3, 1e3, 1e7] {
+        let other = shown(&parsed(&scaled(&text, factor)), "shadow-map", &[]);
+        let [_, other] = counts(&other);
+        assert!(dark.abs_diff(other) <= 12, "{factor}: {dark} {other}");
+    }
+}
+
 /// Powers of two change no digit.
 #[test]
 fn a_scene_in_units_of_a_power_of_two_has_the_same_bits() {

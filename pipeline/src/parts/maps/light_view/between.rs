@@ -129,11 +129,12 @@ impl Between {
         let Some(normal) = normal.try_normalize() else {
             return false;
         };
-        let flat = FLAT * (self.high - self.low).length();
+        let extent = (self.high - self.low).length();
+        let flat = FLAT * extent;
         let height = |p: DVec3| normal.dot(p - a);
         let (least, most) = match self.frame.projection {
-            // Infinitely far away, before all that is seen.
-            Projection::Orthographic => (-normal.z, -normal.z),
+            // Before all that is seen, by as much as its extent.
+            Projection::Orthographic => (-normal.z * extent, -normal.z * extent),
             Projection::Perspective => {
                 let heights = self.light.iter().map(|p| height(*p));
                 let bounds = (f64::INFINITY, f64::NEG_INFINITY);

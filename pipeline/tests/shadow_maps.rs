@@ -296,8 +296,8 @@ fn odd_scenes_stay_sane() {
     }
 }
 
-/// A light in a closed room with a ball: walls round the light, no view can be
-/// planar; and lit where nothing casts.
+/// A light in a closed room: walls round the light, no view can be planar; and lit
+/// where nothing casts.
 #[test]
 fn a_light_inside_a_room_is_shadowed_all_round() {
     let mut scene = scene("cylinder");
@@ -312,7 +312,8 @@ fn a_light_inside_a_room_is_shadowed_all_round() {
     let picture = by("shadow-map", &scene, &["map-size=1024"]);
     let error = VisibilityError::measure(&truth, SIZE, &picture.visibility).unwrap();
     println!("room: {:?}", error.all);
-    assert!(figure(&picture, "views") >= 3.0);
+    // Of the walls alone there is no view: those of a convex room shadow nothing.
+    assert!(figure(&picture, "views") >= 1.0);
     assert!(error.all.unwrap().rmse < 0.15);
     // Without any caster there is no view, and all is lit.
     scene.objects.iter_mut().for_each(|o| o.casts = false);

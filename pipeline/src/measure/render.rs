@@ -188,6 +188,7 @@ fn read_back(
     let encoder = SrgbEncoder::new();
     let labels = times.report.passes.iter().map(|p| p.label.clone());
     let mut warnings = scene.warnings.clone();
+    warnings.extend(scene.view_warnings(size));
     warnings.extend(frame.warnings);
     warnings.extend(event_warnings(&times.report, &frame.roles));
     let counted = times.report.shader_counts().into_iter();

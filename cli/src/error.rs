@@ -52,6 +52,34 @@ pub(crate) enum CliError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A file cannot be put in its place, others are already.
+    #[error(
+        "{}: cannot be written: {source}; {written} of {total} files were written before it",
+        .path.display()
+    )]
+    Rename {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+        /// Files that are in their places.
+        written: usize,
+        /// Files that should be.
+        total: usize,
+    },
+    /// Worker threads cannot be had.
+    #[error("threads cannot be started: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// An environment variable's value is wrong.
+    #[error("the environment variable {name} is `{value}`; {valid}")]
+    Variable {
+        /// The variable.
+        name: &'static str,
+        /// What it was set to.
+        value: String,
+        /// What would be valid.
+        valid: String,
+    },
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),

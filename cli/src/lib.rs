@@ -9,15 +9,18 @@ mod error;
 mod flags;
 mod output;
 mod overlay;
+mod threads;
 mod verbs;
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 use gnomon_pipeline::techniques::Registry;
 
 use command_line::Cli;
+use error::CliError;
 
 /// Runs the program on `arguments`, the first of which is its own name: 0 fine,
 /// 1 differs or a check failed, 2 bad input.
@@ -29,24 +32,27 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 pub fn run_with(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
-        Err(error) => return told(&error),
+        Err(error) => return print_usage(&error),
     };
-    match cli.verb.run(registry) {
+    match threads::start().and_then(|()| cli.verb.run(registry)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(error.exit_code())
-        }
+        Err(error) => print_error(&error),
     }
 }
 
-/// Prints help or what is wrong with the command line.
-fn told(error: &clap::Error) -> ExitCode {
-    // Nobody is left to tell of a closed terminal.
+/// Prints help, or what is wrong with the command line.
+fn print_usage(error: &clap::Error) -> ExitCode {
+    // Nobody is left to tell where it cannot be printed.
     let _ = error.print();
     if error.use_stderr() {
         ExitCode::from(2)
     } else {
         ExitCode::SUCCESS
     }
+}
+
+fn print_error(error: &CliError) -> ExitCode {
+    // As above; `eprintln!` would panic.
+    let _ = writeln!(std::io::stderr().lock(), "error: {error}");
+    ExitCode::from(error.exit_code())
 }

@@ -4,6 +4,10 @@
 //!
 //! `cargo run --release -p gnomon-pipeline --example peer_bench -- [--threads N] [--simd LEVEL] [--tile N]
 //! [--scenes abc] [--sizes 512,1024] [--frames N] [--budget SECONDS] [--json FILE]`
+//!
+//! `--levels sse2,avx2` times whole frames in `rgba16f` beside `rgba8` at these SIMD levels
+//! instead, in turn, and prints the ratio of the shortest times, which other work on the
+//! machine disturbs least.
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 
@@ -16,7 +20,7 @@ use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques;
 use gnomon_pipeline::world::adjacency::EdgeAdjacency;
 use gnomon_pipeline::world::scene::{Material, Scene, builtin};
-use gnomon_raster::{CommandList, Gpu, GpuConfig, SubmitReport, Subresource};
+use gnomon_raster::{CommandList, Gpu, GpuConfig, SimdLevel, SubmitReport, Subresource};
 use sha2::{Digest, Sha256};
 
 struct Options {
@@ -26,10 +30,15 @@ struct Options {
     frames: usize,
     budget: Duration,
     json: Option<String>,
+    /// Compare colour formats at these levels.
+    levels: Vec<SimdLevel>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = options()?;
+    if !options.levels.is_empty() {
+        return compare_formats(&options);
+    }
     let threads = Gpu::new(options.config)?.threads();
     let simd = options.config.simd;
     println!(
@@ -57,6 +66,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
         frames: 200,
         budget: Duration::from_secs(4),
         json: None,
+        levels: Vec::new(),
     };
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     for pair in arguments.chunks(2) {
@@ -71,6 +81,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
             "--sizes" => o.sizes = value.split(',').map(str::parse).collect::<Result<_, _>>()?,
             "--frames" => o.frames = value.parse()?,
             "--budget" => o.budget = Duration::from_secs_f64(value.parse()?),
+            "--levels" => o.levels = value.split(',').map(str::parse).collect::<Result<_, _>>()?,
             "--json" => o.json = Some(value.clone()),
             _ => return Err(format!("unknown option {key}").into()),
         }
@@ -89,6 +100,78 @@ fn peer_scene(name: char) -> Result<Scene, Box<dyn Error>> {
     Ok(scene)
 }
 
+/// As the peers draw, in a colour format.
+fn params(color_format: &str) -> [&str; 4] {
+    let format = match color_format {
+        "rgba16f" => "color-format=rgba16f",
+        _ => "color-format=rgba8",
+    };
+    ["method=zfail", "skip=off", "depth-format=d24", format]
+}
+
+/// Shortest times of frames in `rgba16f` and in `rgba8`, and their ratio.
+fn compare_formats(options: &Options) -> Result<(), Box<dyn Error>> {
+    println!("level  scene size    rgba8  rgba16f ms  ratio    first pass: ratio");
+    for &simd in &options.levels {
+        for name in options.scenes.chars() {
+            let scene = peer_scene(name)?;
+            for &size in &options.sizes {
+                let config = GpuConfig {
+                    simd,
+                    ..options.config
+                };
+                let [[a, a_first], [b, b_first]] = shortest(options, config, &scene, size)?;
+                println!(
+                    "{:<6} {:<5} {size:4} {a:8.3} {b:8.3}     {:.3}    {a_first:8.3} {b_first:8.3}  {:.3}",
+                    simd.name(),
+                    name.to_uppercase(),
+                    b / a,
+                    b_first / a_first
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Shortest milliseconds of a frame and of its first pass, in `rgba8` and in `rgba16f`,
+/// one after the other in turn.
+fn shortest(
+    options: &Options,
+    config: GpuConfig,
+    scene: &Scene,
+    size: u32,
+) -> Result<[[f64; 2]; 2], Box<dyn Error>> {
+    let technique = techniques::find("shadow-volumes")?;
+    let mut sides = Vec::new();
+    for format in ["rgba8", "rgba16f"] {
+        let mut gpu = Gpu::new(config)?;
+        let params = Params::parse(technique, params(format))?;
+        let frame = technique.frame(scene, [size; 2], &params)?;
+        gpu.load(&frame.recording)?;
+        sides.push((gpu, frame.recording.list));
+    }
+    let mut least = [[f64::INFINITY; 2]; 2];
+    let end = Instant::now() + options.budget;
+    for round in 0.. {
+        if round >= 10 && (round >= options.frames || Instant::now() >= end) {
+            break;
+        }
+        for ((gpu, list), least) in sides.iter_mut().zip(&mut least) {
+            let start = Instant::now();
+            let report = gpu.submit(list)?;
+            let whole = start.elapsed().as_secs_f64();
+            for (least, time) in least
+                .iter_mut()
+                .zip([whole, report.passes[0].time.as_secs_f64()])
+            {
+                *least = least.min(time * 1e3);
+            }
+        }
+    }
+    Ok(least)
+}
+
 fn measure_scene(
     options: &Options,
     scene: &Scene,
@@ -97,15 +180,7 @@ fn measure_scene(
     threads: usize,
 ) -> Result<String, Box<dyn Error>> {
     let technique = techniques::find("shadow-volumes")?;
-    let params = Params::parse(
-        technique,
-        [
-            "method=zfail",
-            "skip=off",
-            "color-format=rgba8",
-            "depth-format=d24",
-        ],
-    )?;
+    let params = Params::parse(technique, params("rgba8"))?;
     let mut gpu = Gpu::new(options.config)?;
     let start = Instant::now();
     let frame = technique.frame(scene, [size; 2], &params)?;

@@ -112,7 +112,8 @@ fn a_hard_mask_has_the_rmse_of_the_closed_form() {
     let umbra = score.visibility.of_region(LightRegion::Umbra).unwrap();
     let lit = score.visibility.of_region(LightRegion::Lit).unwrap();
     assert_eq!((umbra.max, lit.max), (0.0, 0.0));
-    assert!(score.other_surface < 20, "{}", score.other_surface);
+    let other = score.pixels.left_out.other_surface();
+    assert!(other < 20, "{other}");
 }
 
 /// A grid of k by k points sees an edge along its rows in steps of 1/k, so it is

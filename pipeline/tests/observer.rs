@@ -2,11 +2,12 @@
 //! for every execution, and no more of them in memory than fits.
 
 use gnomon_pipeline::technique::{Frame, Params};
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::techniques::{self, find};
 use gnomon_pipeline::world::scene::builtin;
+use gnomon_raster::state::{CompareFunction, DepthStencilState, StencilOperation};
 use gnomon_raster::{
-    AccessBatch, AccessObserver, BlockAccess, Gpu, GpuConfig, PassReport, SimdLevel, SubmitReport,
-    Subresource, Wants,
+    AccessBatch, AccessObserver, BlockAccess, CommandList, Gpu, GpuConfig, PassReport, SimdLevel,
+    SubmitReport, Subresource, Wants,
 };
 
 fn frame(scene: &str, technique: &str, size: [u32; 2]) -> Frame {
@@ -138,6 +139,102 @@ fn batches_follow_one_another_the_same_everywhere() {
             assert_eq!(*first.get_or_insert(found), found, "{config:?}");
         }
     }
+}
+
+/// Counts, from the events of a run without skipping, what skipping would do.
+struct WhatIf<'a> {
+    list: &'a CommandList,
+    /// By pass and draw: blocks tested, culled and accepted, fragments killed, depths read.
+    found: Vec<Vec<[u64; 5]>>,
+}
+
+impl AccessObserver for WhatIf<'_> {
+    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
+        for e in batch.blocks {
+            let of = &self.list.passes[pass];
+            let draw = e.draw as usize;
+            let attached = of.depth_stencil.is_some();
+            let state = &of.draws[draw].pipeline.depth_stencil;
+            add(&mut self.found[pass][draw], state, attached, e);
+        }
+    }
+}
+
+fn add(to: &mut [u64; 5], state: &DepthStencilState, attached: bool, e: &BlockAccess) {
+    let compare = state.depth.compare;
+    let looks = !matches!(compare, CompareFunction::Always | CompareFunction::Never);
+    let used = attached && looks && state.depth.bounds.is_none();
+    let [passes, fails] = if used {
+        decided(compare, e)
+    } else {
+        [false; 2]
+    };
+    let face = if e.front {
+        &state.stencil.front
+    } else {
+        &state.stencil.back
+    };
+    let effective = |op| op != StencilOperation::Keep && face.write_mask != 0;
+    let culled = fails && !effective(face.fail_op) && !effective(face.depth_fail_op);
+    let pixels = |mask: u64| u64::from(mask.count_ones());
+    to[0] += u64::from(used);
+    to[1] += u64::from(culled);
+    to[2] += u64::from((passes || fails) && !culled);
+    to[3] += if culled { pixels(e.covered) } else { 0 };
+    to[4] += if passes || fails { 0 } else { pixels(e.z_read) };
+}
+
+/// Whether a block passes or fails as a whole, for the tests that techniques use.
+fn decided(compare: CompareFunction, e: &BlockAccess) -> [bool; 2] {
+    let ([a, b], [min, max]) = (e.span, e.stored);
+    match compare {
+        CompareFunction::Less => [b < min, a >= max && b >= min],
+        CompareFunction::LessEqual => [b <= min, a > max],
+        CompareFunction::Greater => [a > max, b <= min],
+        CompareFunction::GreaterEqual => [a >= max, b < min],
+        CompareFunction::Equal => [a == b && min == max && a == min, b < min || a > max],
+        other => panic!("no technique uses {other:?}"),
+    }
+}
+
+/// What zmin/zmax skip follows from the events of a run without them, draw by draw.
+#[test]
+fn skipping_follows_from_unskipped_events_in_every_technique() {
+    let mut seen = [0; 5];
+    let with = |skip| GpuConfig {
+        skip,
+        ..GpuConfig::default()
+    };
+    for technique in techniques::all() {
+        let frame = frame("creature", technique.name(), [96, 72]);
+        let (_, skipped) = unobserved(&frame, with(true));
+        let list = &frame.recording.list;
+        let draws = list.passes.iter().map(|p| vec![[0; 5]; p.draws.len()]);
+        let mut what_if = WhatIf {
+            list,
+            found: draws.collect(),
+        };
+        let mut gpu = Gpu::new(with(false)).unwrap();
+        gpu.load(&frame.recording).unwrap();
+        let wants = Wants { depth_ranges: true };
+        gpu.submit_observed(list, wants, &mut what_if).unwrap();
+        for (pass, found) in skipped.passes.iter().zip(&what_if.found) {
+            for (draw, found) in pass.draws.iter().zip(found) {
+                let c = &draw.counters;
+                let counted = [
+                    c.tiles.tested,
+                    c.tiles.culled,
+                    c.tiles.accepted,
+                    c.fragments.hiz_killed,
+                    c.traffic.z.read_accesses,
+                ];
+                let what = (technique.name(), &pass.label, &draw.label);
+                assert_eq!(*found, counted, "{what:?}");
+                (0..5).for_each(|i| seen[i] += counted[i]);
+            }
+        }
+    }
+    assert!(seen.iter().all(|n| *n > 1000), "{seen:?}");
 }
 
 /// Memory of the process so far at its highest, in bytes, where the system tells.

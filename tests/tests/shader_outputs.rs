@@ -13,7 +13,7 @@ use gnomon_raster::state::{
 use gnomon_raster::{
     ColorAttachment, CommandList, Counters, Draw, Error, F32, Format, Gpu, GpuConfig, I32, Lanes,
     LoadOp, PassReport, RenderPass, RenderPipeline, SimdLevel, StoreOp, Subresource,
-    TextureDescriptor,
+    TextureDescriptor, TextureId,
 };
 
 const SIZE: u32 = 72;
@@ -125,14 +125,26 @@ fn run(config: GpuConfig, formats: &[Format], draws: Vec<Draw>) -> (Images, Vec<
 }
 
 fn submit(config: GpuConfig, formats: &[Format], draws: Vec<Draw>) -> (Images, PassReport) {
-    try_submit(config, formats, draws).unwrap()
+    let (gpu, textures, report) = try_submit(config, formats, draws).unwrap();
+    let read = |&t| {
+        let texels = gpu
+            .texture(t)
+            .unwrap()
+            .read_color(Subresource::default())
+            .unwrap();
+        texels
+            .iter()
+            .map(|t| t.0.map(|c| (c * 255.0) as u8))
+            .collect()
+    };
+    (textures.iter().map(read).collect(), report)
 }
 
 fn try_submit(
     config: GpuConfig,
     formats: &[Format],
     draws: Vec<Draw>,
-) -> Result<(Images, PassReport), Error> {
+) -> Result<(Gpu, Vec<TextureId>, PassReport), Error> {
     let mut gpu = Gpu::new(config).unwrap();
     let textures: Vec<_> = formats
         .iter()
@@ -155,18 +167,7 @@ fn try_submit(
             draws,
         }],
     })?;
-    let read = |&t| {
-        let texels = gpu
-            .texture(t)
-            .unwrap()
-            .read_color(Subresource::default())
-            .unwrap();
-        texels
-            .iter()
-            .map(|t| t.0.map(|c| (c * 255.0) as u8))
-            .collect()
-    };
-    Ok((textures.iter().map(read).collect(), report.passes.remove(0)))
+    Ok((gpu, textures, report.passes.remove(0)))
 }
 
 #[test]
@@ -242,7 +243,9 @@ fn more_counts_than_there_are_places_are_refused() {
         |_| ScalarFragmentOutput::color([1.0; 4]),
     );
     let list = vec![draw(shader, vec![ColorTargetState::OPAQUE])];
-    let error = try_submit(GpuConfig::default(), &[Format::Rgba8Unorm], list).unwrap_err();
+    let error = try_submit(GpuConfig::default(), &[Format::Rgba8Unorm], list)
+        .err()
+        .expect("five counts");
     let text = error.to_string();
     assert!(
         text.contains("counts") && text.contains('5') && text.contains('4'),
@@ -264,26 +267,46 @@ fn one_colour_is_the_same_with_and_without_running_the_shader() {
         None,
         Some(BlendState::ADDITIVE),
         Some(BlendState::SUBTRACTIVE),
+        Some(BlendState::MIN),
     ];
     let colors = [
         [0.1, 0.7, 1.0, 0.0],
         [-0.0, 0.5, 0.5, 0.5],
         [2.0, -1.0, f32::NAN, 0.3],
+        [40_000.0, 1e9, -1e-8, f32::INFINITY],
+        [f32::NAN, 0.0, 0.0, 0.0],
     ];
-    for format in [Format::Rgba8Unorm, Format::Rgba16Float, Format::Rg8Unorm] {
-        for color in colors {
-            for target in blends.into_iter().flat_map(|b| [masked(b), whole(b)]) {
+    for format in Format::ALL {
+        let states = blends.into_iter().flat_map(|b| [masked(b), whole(b)]);
+        let valid = |t: &ColorTargetState| t.blend.is_none() || format.is_blendable();
+        if format.is_depth_stencil() {
+            continue;
+        }
+        for (color, target) in colors
+            .into_iter()
+            .flat_map(|c| states.clone().filter(valid).map(move |t| (c, t)))
+        {
+            for simd in SimdLevel::available() {
+                let config = GpuConfig {
+                    threads: 1,
+                    simd,
+                    ..GpuConfig::default()
+                };
                 let result = |says_so| {
                     let shader = Plain { color, says_so };
                     let draws = vec![draw(shader.into(), vec![target]); 2];
-                    run(GpuConfig::default(), &[format], draws)
+                    let (gpu, textures, pass) = try_submit(config, &[format], draws).unwrap();
+                    let texture = gpu.texture(textures[0]).unwrap();
+                    let raw = texture.read_raw(Subresource::default()).unwrap();
+                    let counters: Vec<Counters> = pass.draws.iter().map(|d| d.counters).collect();
+                    (raw, counters)
                 };
-                let (plain, skipped) = (result(false), result(true));
+                let (run, not_run) = (result(false), result(true));
                 assert!(
-                    plain == skipped,
-                    "{format:?}, {color:?}, {target:?}: {:?} and {:?}",
-                    plain.1,
-                    skipped.1
+                    run == not_run,
+                    "{simd}, {format:?}, {color:?}, {target:?}: {:?} and {:?}",
+                    run.1,
+                    not_run.1
                 );
             }
         }

@@ -1,9 +1,9 @@
 //! Files that appear whole or not at all.
 
-use std::ffi::OsString;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::CliError;
 
@@ -29,6 +29,7 @@ impl Batch {
             source,
         };
         check_target(target)?;
+        self.check_new(target)?;
         self.make_folder(folder_of(target)).map_err(failed)?;
         let temporary = temporary_name(target);
         let staged = Staged {
@@ -41,14 +42,36 @@ impl Batch {
 
     /// Renames all files to their targets.
     pub(crate) fn commit(mut self) -> Result<(), CliError> {
-        for staged in std::mem::take(&mut self.staged) {
-            fs::rename(&staged.temporary, &staged.target).map_err(|source| CliError::Write {
-                path: staged.target.clone(),
-                source,
+        let total = self.staged.len();
+        for written in 0..total {
+            let Staged { temporary, target } = &self.staged[written];
+            fs::rename(temporary, target).map_err(|source| match written {
+                0 => CliError::Write {
+                    path: target.clone(),
+                    source,
+                },
+                _ => CliError::Rename {
+                    path: target.clone(),
+                    source,
+                    written,
+                    total,
+                },
             })?;
         }
+        self.staged.clear();
         self.made_folders.clear();
         Ok(())
+    }
+
+    /// One of two files of a name would be lost.
+    fn check_new(&self, target: &Path) -> Result<(), CliError> {
+        if self.staged.iter().all(|s| s.target != target) {
+            return Ok(());
+        }
+        Err(CliError::Write {
+            path: target.to_owned(),
+            source: io::Error::other("two files would have this name"),
+        })
     }
 
     fn make_folder(&mut self, folder: &Path) -> io::Result<()> {
@@ -57,8 +80,12 @@ impl Batch {
             .take_while(|f| !f.as_os_str().is_empty() && !f.exists())
             .collect();
         for folder in missing.into_iter().rev() {
-            fs::create_dir(folder)?;
-            self.made_folders.push(folder.to_owned());
+            match fs::create_dir(folder) {
+                Ok(()) => self.made_folders.push(folder.to_owned()),
+                // Another program may have been faster.
+                Err(_) if folder.is_dir() => (),
+                Err(error) => return Err(error),
+            }
         }
         Ok(())
     }
@@ -87,6 +114,10 @@ pub(crate) fn check_target(target: &Path) -> Result<(), CliError> {
     }
     if target.is_dir() {
         return Err(wrong(io::ErrorKind::IsADirectory, "it is a folder"));
+    }
+    if target.exists() && !target.is_file() {
+        let what = "it is no regular file, and would be replaced by one";
+        return Err(wrong(io::ErrorKind::InvalidInput, what));
     }
     let nearest = folder_of(target).ancestors().find(|f| f.exists());
     match nearest {
@@ -135,11 +166,12 @@ fn folder_of(target: &Path) -> &Path {
     }
 }
 
+/// A name beside `target` that nobody else has; the target's own might be too long
+/// to add to.
 fn temporary_name(target: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(target.file_name().unwrap_or_default());
-    name.push(format!(".{}.part", std::process::id()));
-    target.with_file_name(name)
+    static NUMBER: AtomicUsize = AtomicUsize::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    target.with_file_name(format!(".gnomon-{}-{number}.part", std::process::id()))
 }
 
 #[cfg(test)]
@@ -171,6 +203,48 @@ mod tests {
         batch.commit().unwrap();
         assert_eq!(fs::read(folder.join("c.txt")).unwrap(), b"y");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn names_of_any_length_are_written_whole() {
+        let folder = scratch("long");
+        let target = folder.join(format!("{}.png", "n".repeat(251)));
+        let mut batch = Batch::default();
+        batch.stage(&target, b"x").unwrap();
+        batch.commit().unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"x");
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn one_name_is_not_taken_twice() {
+        let folder = scratch("twice");
+        let mut batch = Batch::default();
+        batch.stage(&folder.join("a.png"), b"x").unwrap();
+        let message = batch.stage(&folder.join("a.png"), b"y").unwrap_err();
+        assert!(message.to_string().contains("two files"), "{message}");
+        drop(batch);
+        assert!(!folder.exists());
+    }
+
+    /// The rest is not left under temporary names, and what is there is told.
+    #[test]
+    fn a_commit_that_fails_says_how_far_it_came() {
+        let folder = scratch("half");
+        let mut batch = Batch::default();
+        for name in ["a", "b", "c"] {
+            batch.stage(&folder.join(name), b"x").unwrap();
+        }
+        fs::create_dir_all(folder.join("b/full")).unwrap();
+        let message = batch.commit().unwrap_err().to_string();
+        assert!(message.contains("1 of 3"), "{message}");
+        let mut names: Vec<_> = fs::read_dir(&folder)
+            .unwrap()
+            .map(|e| e.unwrap().file_name())
+            .collect();
+        names.sort();
+        assert_eq!(names, ["a", "b"]);
         fs::remove_dir_all(&folder).unwrap();
     }
 

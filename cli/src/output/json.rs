@@ -53,7 +53,7 @@ pub(crate) struct RenderDocument {
 
 /// What the scene and flags say about a render.
 #[derive(Clone, Copy)]
-pub(crate) struct RenderJob<'a> {
+pub(crate) struct RenderInputs<'a> {
     pub(crate) scene: &'a gnomon_pipeline::world::scene::Scene,
     pub(crate) technique: &'static dyn Technique,
     pub(crate) params: &'a Params,
@@ -70,10 +70,20 @@ pub(crate) struct FileDocument {
     pub(crate) path: String,
 }
 
+/// Hashes of what a frame leaves behind.
 #[derive(Clone, Debug, Serialize)]
-struct Hashes {
+pub(crate) struct Hashes {
     color: String,
     visibility: String,
+}
+
+impl Hashes {
+    pub(crate) fn of(done: &Rendered) -> Self {
+        Self {
+            color: done.color_hash(),
+            visibility: done.visibility_hash(),
+        }
+    }
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -193,7 +203,7 @@ pub(crate) struct WarningDocument {
 
 impl RenderDocument {
     /// Describes a finished render.
-    pub(crate) fn new(job: RenderJob<'_>, done: &Rendered, files: Vec<FileDocument>) -> Self {
+    pub(crate) fn new(job: RenderInputs<'_>, done: &Rendered, files: Vec<FileDocument>) -> Self {
         let params = job.params.iter().map(|(k, v)| (k.to_owned(), v.to_owned()));
         Self {
             scene: job.scene.name.clone(),
@@ -205,10 +215,7 @@ impl RenderDocument {
             simd: job.gpu.simd.name(),
             skip: job.gpu.skip,
             repeat: job.repeat,
-            hash: Hashes {
-                color: done.color_hash(),
-                visibility: done.visibility_hash(),
-            },
+            hash: Hashes::of(done),
             time_ms: Times {
                 frame: done.frame_ms,
                 passes: merged(&done.pass_ms),

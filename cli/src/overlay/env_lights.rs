@@ -44,10 +44,10 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
         };
         canvas.line(&corners, true, stroke);
     }
-    legend(placed).below(canvas, heat)
+    make_legend(placed).below(canvas, heat)
 }
 
-fn legend(placed: &PlacedEnvironment) -> Legend {
+fn make_legend(placed: &PlacedEnvironment) -> Legend {
     let (map, fit) = (&placed.map, &placed.fit);
     let total = luminance(map.cube.total()) as f64;
     let share = |energy| 100.0 * luminance(energy) as f64 / total;

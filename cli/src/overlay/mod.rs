@@ -10,7 +10,7 @@ mod traffic;
 mod volumes;
 mod wedges;
 
-use gnomon_pipeline::measure::heat::Heat;
+use gnomon_pipeline::measure::heat::{Heat, PassWork};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::{Params, SceneWedges};
 use gnomon_pipeline::world::scene::Scene;
@@ -64,6 +64,37 @@ pub(crate) fn draw(kind: OverlayKind, source: &Source<'_>) -> Picture {
     }
 }
 
+/// Passes that have no place in the picture, with their work in total; `None` where
+/// all have one.
+fn name_passes_left_out(
+    heat: &Heat,
+    work: fn(&PassWork) -> u64,
+    show: fn(u64) -> String,
+) -> Option<String> {
+    let mut labels: Vec<&str> = Vec::new();
+    for pass in &heat.elsewhere {
+        if !labels.contains(&pass.label.as_str()) {
+            labels.push(&pass.label);
+        }
+    }
+    let (named, more) = labels.split_at(labels.len().min(MOST_LABELS));
+    let more = match more.len() {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    let sum = heat.elsewhere.iter().map(work).sum();
+    (!named.is_empty()).then(|| {
+        format!(
+            "left out, being no pixels of the picture: {}{more} ({})",
+            named.join(", "),
+            show(sum)
+        )
+    })
+}
+
+/// Labels that a legend names.
+const MOST_LABELS: usize = 6;
+
 /// Where a heat scale ends: at the value that all but one in 200 of the values
 /// above zero stay below, so that a few extremes do not darken the rest.
 fn scale_top(values: impl Iterator<Item = u64>) -> u64 {
@@ -114,6 +145,28 @@ mod tests {
             .map(|(p, _)| p)
             .collect();
         assert_eq!(places, [0.0, 0.25, 0.5, 0.75, 1.0]);
+    }
+
+    #[test]
+    fn what_is_left_out_is_named_and_summed() {
+        let pass = |number: usize, label: String| PassWork {
+            number,
+            label,
+            fragments: 1,
+            bytes: Default::default(),
+        };
+        let mut heat = Heat {
+            size: [1, 1],
+            blocks: [1, 1],
+            passes: Vec::new(),
+            elsewhere: Vec::new(),
+        };
+        let told = |heat: &Heat| name_passes_left_out(heat, |p| p.fragments, |n| n.to_string());
+        assert_eq!(told(&heat), None);
+        let labels = (0..16).map(|k| format!("view {}", k % 8));
+        heat.elsewhere = labels.enumerate().map(|(k, l)| pass(k, l)).collect();
+        let text = told(&heat).unwrap();
+        assert!(text.contains("view 5 and 2 more (16)"), "{text}");
     }
 
     #[test]

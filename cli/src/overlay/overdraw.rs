@@ -1,7 +1,8 @@
 //! Fragments generated at each pixel.
 
-use super::{Source, place, scale_labels, scale_top};
+use super::{Source, name_passes_left_out, place, scale_labels, scale_top};
 use crate::draw::{Canvas, Legend, Picture, heat};
+use crate::output::numbers;
 
 pub(super) fn draw(source: &Source<'_>) -> Picture {
     let picture = source.picture();
@@ -19,14 +20,16 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
     let max = u64::from(counts.iter().copied().max().unwrap_or(0));
     let sum: u64 = counts.iter().map(|c| u64::from(*c)).sum();
     let passes: Vec<&str> = recorded.passes.iter().map(|p| p.label.as_str()).collect();
+    let shown = format!(
+        "mean {:.2}, max {max}; passes: {}",
+        sum as f64 / counts.len().max(1) as f64,
+        passes.join(", ")
+    );
+    let left_out = name_passes_left_out(recorded, |p| p.fragments, numbers::count);
     let legend = Legend {
         title: "Overdraw: fragments generated per pixel, before any test".to_owned(),
         scale: scale_labels(top, max, |n| n.to_string()),
-        notes: vec![format!(
-            "mean {:.2}, max {max}; passes: {}",
-            sum as f64 / counts.len().max(1) as f64,
-            passes.join(", ")
-        )],
+        notes: std::iter::once(shown).chain(left_out).collect(),
         ..Legend::default()
     };
     legend.below(canvas, heat)

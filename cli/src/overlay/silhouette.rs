@@ -37,14 +37,14 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
     for (side, ends) in &seen {
         draw_visible(&mut canvas, &depth, side, ends);
     }
-    legend(&sides).below(canvas, heat)
+    make_legend(&sides).below(canvas, heat)
 }
 
 fn colour(side: &Side) -> [u8; 3] {
     if side.front { FRONT } else { BACK }
 }
 
-fn legend(sides: &[Side]) -> Legend {
+fn make_legend(sides: &[Side]) -> Legend {
     let front = sides.iter().filter(|s| s.front).count();
     Legend {
         title: format!("Silhouette seen from the light: {} edges", sides.len()),

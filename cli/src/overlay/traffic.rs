@@ -1,6 +1,6 @@
 //! Bytes read and written in each 8x8 block.
 
-use super::{Source, place, scale_labels, scale_top};
+use super::{Source, name_passes_left_out, place, scale_labels, scale_top};
 use crate::draw::{Canvas, Legend, Picture, heat};
 use crate::output::numbers;
 
@@ -25,6 +25,14 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
     let sum = |client: fn(&gnomon_pipeline::measure::heat::BlockBytes) -> u64| {
         numbers::bytes(blocks.iter().map(client).sum())
     };
+    let shown = format!(
+        "z {}, stencil {}, color {}, hiz {}; vertices, textures and clears left out",
+        sum(|b| b.z),
+        sum(|b| b.stencil),
+        sum(|b| b.color),
+        sum(|b| b.hiz)
+    );
+    let left_out = name_passes_left_out(recorded, |p| p.bytes.total(), numbers::bytes);
     let legend = Legend {
         title: "Traffic: logical bytes read and written per 8x8 block".to_owned(),
         scale: scale_labels(
@@ -32,13 +40,7 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
             totals.iter().copied().max().unwrap_or(0),
             numbers::bytes,
         ),
-        notes: vec![format!(
-            "z {}, stencil {}, color {}, hiz {}; vertices and clears left out",
-            sum(|b| b.z),
-            sum(|b| b.stencil),
-            sum(|b| b.color),
-            sum(|b| b.hiz)
-        )],
+        notes: std::iter::once(shown).chain(left_out).collect(),
         ..Legend::default()
     };
     legend.below(canvas, heat)

@@ -39,10 +39,10 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
             }
         }
     }
-    legend(source, meshes).below(canvas, heat)
+    make_legend(source, meshes).below(canvas, heat)
 }
 
-fn legend(source: &Source<'_>, meshes: &[WedgeMesh]) -> Legend {
+fn make_legend(source: &Source<'_>, meshes: &[WedgeMesh]) -> Legend {
     let kind = source.wedges.map(|w| w.kind);
     let faces: usize = meshes.iter().map(|m| m.triangles.len()).sum();
     let (finite, note) = match kind {

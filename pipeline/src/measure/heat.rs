@@ -2,7 +2,12 @@
 //! pass, for overlays. Rendered by [`record`] with an access observer; slower
 //! than [`crate::measure::render::render`], and the same bits.
 
-use gnomon_raster::{AccessBatch, AccessObserver, BlockAccess, Format, Gpu, PassReport, Wants};
+mod screen;
+
+use gnomon_raster::{
+    AccessBatch, AccessObserver, BlockAccess, Gpu, MAX_COLOR_ATTACHMENTS, PassReport, RenderPass,
+    TextureId, Wants,
+};
 
 use crate::measure::render::{RenderError, RenderSettings};
 use crate::technique::{Frame, Params, Technique};
@@ -15,7 +20,7 @@ pub struct BlockBytes {
     pub z: u64,
     /// Stencil.
     pub stencil: u64,
-    /// Colour attachment 0.
+    /// Colour attachments.
     pub color: u64,
     /// zmin/zmax entries.
     pub hiz: u64,
@@ -53,8 +58,24 @@ pub struct Heat {
     pub size: [u32; 2],
     /// Blocks across and down.
     pub blocks: [u32; 2],
-    /// Pass by pass.
+    /// Passes onto the frame's own pixels, in their order.
     pub passes: Vec<PassHeat>,
+    /// Passes onto other images, such as light views: they have no place in the
+    /// picture.
+    pub elsewhere: Vec<PassWork>,
+}
+
+/// The work of a pass, wherever it was done. Clears are left out.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PassWork {
+    /// The pass's number in the frame.
+    pub number: usize,
+    /// The pass's label.
+    pub label: String,
+    /// Fragments generated.
+    pub fragments: u64,
+    /// Bytes by client.
+    pub bytes: BlockBytes,
 }
 
 impl Heat {
@@ -116,52 +137,97 @@ pub fn record(
     Ok(recorder.heat)
 }
 
-/// Adds up accesses; what each of them costs in bytes.
+/// Adds up accesses.
 struct Recorder {
     heat: Heat,
-    /// The pass that is being drawn.
+    /// The pass that is being drawn, where it draws onto the frame's pixels.
     pass: PassHeat,
+    /// The same where it draws onto another image.
+    work: PassWork,
+    targets: Vec<PassTargets>,
+}
+
+/// What a pass draws into: whether the frame's pixels, and what an access costs.
+struct PassTargets {
+    on_screen: bool,
     depth_bytes: u64,
-    color_bytes: u64,
+    color_bytes: [u64; MAX_COLOR_ATTACHMENTS],
 }
 
 impl Recorder {
     fn new(gpu: &Gpu, frame: &Frame, size: [u32; 2]) -> Result<Self, RenderError> {
-        let format = |id| Ok::<Format, RenderError>(gpu.texture(id)?.descriptor().format);
+        let on_screen = screen::screen_passes(gpu, frame)?;
+        let passes = frame.recording.list.passes.iter().zip(on_screen);
+        let targets = passes.map(|(pass, on_screen)| PassTargets::new(gpu, pass, on_screen));
         let blocks = size.map(|s| s.div_ceil(8));
         Ok(Self {
             heat: Heat {
                 size,
                 blocks,
                 passes: Vec::new(),
+                elsewhere: Vec::new(),
             },
             pass: PassHeat::new("", size, blocks),
-            depth_bytes: format(frame.outputs.depth_stencil)?.bytes(),
-            color_bytes: format(frame.outputs.color)?.bytes(),
+            work: PassWork::default(),
+            targets: targets.collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl PassTargets {
+    fn new(gpu: &Gpu, pass: &RenderPass, on_screen: bool) -> Result<Self, RenderError> {
+        let bytes = |texture: TextureId| {
+            Ok::<u64, RenderError>(gpu.texture(texture)?.descriptor().format.bytes())
+        };
+        let mut color_bytes = [0; MAX_COLOR_ATTACHMENTS];
+        for (to, attachment) in color_bytes.iter_mut().zip(&pass.color) {
+            *to = bytes(attachment.texture)?;
+        }
+        let depth = pass.depth_stencil.as_ref();
+        Ok(Self {
+            on_screen,
+            depth_bytes: depth.map_or(Ok(0), |a| bytes(a.texture))?,
+            color_bytes,
         })
     }
 
     fn bytes(&self, a: &BlockAccess) -> BlockBytes {
         let accesses = |read: u64, write: u64| u64::from(read.count_ones() + write.count_ones());
+        let color = (0..MAX_COLOR_ATTACHMENTS)
+            .map(|k| accesses(a.color_read[k], a.color_write[k]) * self.color_bytes[k]);
         BlockBytes {
             z: accesses(a.z_read, a.z_write) * self.depth_bytes,
             stencil: accesses(a.stencil_read, a.stencil_write),
-            color: accesses(a.color_read[0], a.color_write[0]) * self.color_bytes,
+            color: color.sum(),
             hiz: 8 * (u64::from(a.hiz_read) + u64::from(a.hiz_write)),
         }
     }
 }
 
 impl AccessObserver for Recorder {
-    fn batch(&mut self, _: usize, batch: &AccessBatch<'_>) {
+    fn batch(&mut self, number: usize, batch: &AccessBatch<'_>) {
+        let targets = &self.targets[number];
         for access in batch.blocks {
-            let bytes = self.bytes(access);
-            self.pass
-                .add(access, &bytes, self.heat.size[0], self.heat.blocks[0]);
+            let bytes = targets.bytes(access);
+            if targets.on_screen {
+                self.pass
+                    .add(access, &bytes, self.heat.size[0], self.heat.blocks[0]);
+            } else {
+                self.work.fragments += u64::from(access.covered.count_ones());
+                self.work.bytes.add(&bytes);
+            }
         }
     }
 
-    fn end(&mut self, _: usize, report: &PassReport) {
+    fn end(&mut self, number: usize, report: &PassReport) {
+        if !self.targets[number].on_screen {
+            self.heat.elsewhere.push(PassWork {
+                number,
+                label: report.label.clone(),
+                ..std::mem::take(&mut self.work)
+            });
+            return;
+        }
         let next = PassHeat::new("", self.heat.size, self.heat.blocks);
         let mut done = std::mem::replace(&mut self.pass, next);
         done.label.clone_from(&report.label);

@@ -4,6 +4,8 @@ mod listen;
 mod pass;
 mod prepare;
 mod split;
+mod tiles;
+mod unit;
 mod validate;
 
 use std::time::Instant;

@@ -1,20 +1,19 @@
 //! One render pass: its draws in batches, each through vertices, chunks, tiles.
 
-use std::sync::{Mutex, PoisonError};
-
 use rayon::prelude::*;
 
 use super::listen::{self, Listener};
 use super::prepare::{Prepared, Target, prepare};
-use super::split::{self, Fill, Lent};
-use crate::command::{Draw, Referenced, RenderPass};
-use crate::counters::{AccessSizes, Counters, Traffic};
+use super::split::{self, Lent};
+use super::tiles::TileStage;
+use super::unit::{Job, Unit, batches, units, vertex_traffic};
+use crate::command::{Draw, RenderPass};
+use crate::counters::Counters;
 use crate::geometry::{Chunk, ChunkInput, ShadedVertices, TileGrid, process_chunk, shade_part};
 use crate::gpu::{DrawReport, Gpu, PassReport, Recycled};
-use crate::observer::{BlockAccess, Wants};
+use crate::observer::Wants;
 use crate::shader::VertexBatch;
-use crate::simd::SimdLevel;
-use crate::tile::{ChunkRef, DrawWork, Scratch, TileTarget, run_tile};
+use crate::tile::{ChunkRef, DrawWork};
 
 /// Primitives of a chunk: enough to fill packets, few enough to share out.
 const CHUNK: u32 = 1024;
@@ -60,25 +59,6 @@ fn draw_report(draw: &Draw, counters: Counters) -> DrawReport {
     }
 }
 
-/// Vertices of one instance of a draw.
-struct Unit<'a> {
-    draw: usize,
-    instance: u32,
-    /// Vertex numbers and, with indices, positions among them.
-    referenced: std::borrow::Cow<'a, Referenced>,
-    primitives: u32,
-    /// Number of the first primitive in the draw.
-    first_primitive: u32,
-}
-
-/// A run of primitives of a unit.
-#[derive(Clone, Copy)]
-struct Job {
-    unit: usize,
-    first: u32,
-    primitives: u32,
-}
-
 struct Executor<'a> {
     gpu: &'a Gpu,
     grid: TileGrid,
@@ -116,11 +96,11 @@ impl<'a> Executor<'a> {
 
     /// Batch after batch: its vertices, its chunks, all tiles.
     fn run(mut self, lent: &mut Lent, mut listener: Option<Listener<'_>>) -> Vec<Counters> {
-        let units = self.units();
+        let units = units(&self.prepared);
         let mut counters = self.vertex_counters(&units);
         let batches = self.batches(&units, listener.is_some());
         let mut vertices = Vertices::new(units.len());
-        let mut stage = TileStage::new(&self, lent);
+        let mut stage = TileStage::new(self.gpu, self.grid, self.prepared.len(), lent);
         for (number, jobs) in batches.iter().enumerate() {
             let is_last = number + 1 == batches.len();
             self.shade_for(&units, jobs, &mut vertices);
@@ -180,27 +160,6 @@ impl<'a> Executor<'a> {
             n => SHARED_BATCH.saturating_mul(n),
         };
         batches(units, CHUNK, room)
-    }
-
-    fn units(&self) -> Vec<Unit<'a>> {
-        let mut units = Vec::new();
-        for (number, p) in self.prepared.iter().enumerate() {
-            let d = p.draw;
-            let primitives = d.count / d.pipeline.primitive.topology.vertices();
-            if primitives == 0 {
-                continue;
-            }
-            for instance in 0..d.instances {
-                units.push(Unit {
-                    draw: number,
-                    instance,
-                    referenced: referenced(d, primitives),
-                    primitives,
-                    first_primitive: instance * primitives,
-                });
-            }
-        }
-        units
     }
 
     /// Shades the vertices of the units up to the last of `jobs`.
@@ -307,134 +266,6 @@ impl Vertices {
     }
 }
 
-/// What a worker needs beside the tile itself; what it counts and finds.
-struct Desk {
-    scratch: Scratch,
-    accesses: Vec<BlockAccess>,
-}
-
-/// Desks of a pass. A worker takes any free one for a tile: all that they gather
-/// is sums, and lists that are sorted in the end.
-#[derive(Default)]
-struct Desks(Mutex<Vec<Desk>>);
-
-impl Desks {
-    fn take(&self, draws: usize) -> Desk {
-        let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        free.unwrap_or_else(|| Desk {
-            scratch: Scratch::new(draws),
-            accesses: Vec::new(),
-        })
-    }
-
-    fn put(&self, desk: Desk) {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .push(desk);
-    }
-
-    /// What the workers have gathered.
-    fn accesses(&mut self) -> impl Iterator<Item = &mut Vec<BlockAccess>> {
-        let all = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
-        all.iter_mut().map(|d| &mut d.accesses)
-    }
-
-    fn into_all(self) -> Vec<Desk> {
-        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// The tiles of a pass, and who works on them.
-struct TileStage<'a> {
-    gpu: &'a Gpu,
-    grid: TileGrid,
-    sizes: AccessSizes,
-    tiles: Vec<TileTarget<'a>>,
-    /// What the load operations store, until they have.
-    loads: Option<Fill>,
-    stores: Fill,
-    draws: usize,
-    parallel: bool,
-    desks: Desks,
-}
-
-impl<'a> TileStage<'a> {
-    fn new(executor: &Executor<'a>, lent: &'a mut Lent) -> Self {
-        Self {
-            gpu: executor.gpu,
-            grid: executor.grid,
-            sizes: lent.sizes,
-            loads: Some(lent.loads()),
-            stores: lent.stores(),
-            tiles: lent.tiles(executor.gpu.config.tile),
-            draws: executor.prepared.len(),
-            parallel: executor.parallel,
-            desks: Desks::default(),
-        }
-    }
-
-    /// Runs `work` on all tiles, after the load operations the first time, and before
-    /// the store operations where the pass `ends`.
-    fn run(&mut self, work: &[DrawWork<'_>], ends: bool, listening: bool) {
-        let loads = self.loads.take();
-        let visit = Visit {
-            level: self.gpu.config.simd,
-            grid: self.grid,
-            work,
-            sizes: &self.sizes,
-            before: loads.as_ref(),
-            after: ends.then_some(&self.stores),
-            listening,
-        };
-        let (desks, draws) = (&self.desks, self.draws);
-        if self.parallel {
-            let tiles = self.tiles.par_iter_mut().with_max_len(1);
-            tiles.for_each(|tile| {
-                let mut desk = desks.take(draws);
-                visit.tile(tile, &mut desk);
-                desks.put(desk);
-            });
-        } else {
-            let mut desk = desks.take(draws);
-            let tiles = self.tiles.iter_mut();
-            tiles.for_each(|tile| visit.tile(tile, &mut desk));
-            desks.put(desk);
-        }
-    }
-}
-
-/// What is done in every tile.
-struct Visit<'a> {
-    level: SimdLevel,
-    grid: TileGrid,
-    work: &'a [DrawWork<'a>],
-    sizes: &'a AccessSizes,
-    before: Option<&'a Fill>,
-    after: Option<&'a Fill>,
-    listening: bool,
-}
-
-impl Visit<'_> {
-    fn tile(&self, tile: &mut TileTarget<'_>, desk: &mut Desk) {
-        if let Some(fill) = self.before {
-            fill.apply(tile, self.sizes);
-        }
-        let number = (tile.y >> self.grid.shift) * self.grid.across + (tile.x >> self.grid.shift);
-        run_tile(
-            self.level,
-            self.work,
-            number as usize,
-            tile,
-            &mut desk.scratch,
-            self.listening.then_some(&mut desk.accesses),
-        );
-        if let Some(fill) = self.after {
-            fill.apply(tile, self.sizes);
-        }
-    }
-}
-
 /// Chunks grouped by draw, in submission order.
 fn draw_work<'a>(
     units: &[Unit<'_>],
@@ -460,64 +291,4 @@ fn draw_work<'a>(
         }
     }
     work
-}
-
-/// Chunks of all units, in batches of `size` primitives; at least one batch, for the load
-/// operations.
-fn batches(units: &[Unit<'_>], chunk: u32, size: u32) -> Vec<Vec<Job>> {
-    let mut batches = vec![Vec::new()];
-    let mut room = size;
-    for (u, unit) in units.iter().enumerate() {
-        for first in (0..unit.primitives).step_by(chunk as usize) {
-            let primitives = chunk.min(unit.primitives - first);
-            if room < primitives {
-                batches.push(Vec::new());
-                room = size;
-            }
-            room -= primitives;
-            batches.last_mut().expect("never empty").push(Job {
-                unit: u,
-                first,
-                primitives,
-            });
-        }
-    }
-    batches
-}
-
-fn referenced(d: &Draw, primitives: u32) -> std::borrow::Cow<'_, Referenced> {
-    use std::borrow::Cow;
-    let used = (primitives * d.pipeline.primitive.topology.vertices()) as usize;
-    let first = d.first as usize;
-    match &d.indices {
-        None => Cow::Owned(Referenced {
-            vertices: (d.first..d.first + used as u32).collect(),
-            local: Vec::new(),
-        }),
-        Some(b) if first == 0 && used == b.indices().len() => Cow::Borrowed(b.referenced()),
-        Some(b) => Cow::Owned(Referenced::of(&b.indices()[first..first + used])),
-    }
-}
-
-/// Vertex and index traffic of draw number `number` (rules §8).
-fn vertex_traffic(d: &Draw, units: &[Unit<'_>], number: usize) -> Counters {
-    let mut c = Counters::default();
-    // Units are in the order of draws; a pass may have thousands.
-    let first = units.partition_point(|u| u.draw < number);
-    let mine = || units[first..].iter().take_while(|u| u.draw == number);
-    let invocations: u64 = mine().map(|u| u.referenced.vertices.len() as u64).sum();
-    c.primitives.vertex_shader_invocations = invocations;
-    let read = |accesses: u64, bytes: u64| Traffic {
-        read_accesses: accesses,
-        read_bytes: accesses * bytes,
-        ..Traffic::default()
-    };
-    if let Some(v) = &d.vertices {
-        c.traffic.vertex = read(invocations, 4 * v.stride as u64);
-    }
-    if d.indices.is_some() {
-        let per = u64::from(d.pipeline.primitive.topology.vertices());
-        c.traffic.index = read(mine().map(|u| u64::from(u.primitives) * per).sum(), 4);
-    }
-    c
 }

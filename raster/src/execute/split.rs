@@ -2,7 +2,7 @@
 
 use crate::command::{ColorAttachment, DepthStencilAttachment, LoadOp, RenderPass, StoreOp};
 use crate::counters::{AccessSizes, ClientTraffic, Traffic, packed_word_bytes};
-use crate::format::{Format, encode, encode_depth};
+use crate::format::{Format, encode, encode_depth, to_stored};
 use crate::gpu::Gpu;
 use crate::texture::{
     Block, Block4, ColorBlocks, DepthPlane, Layout, Plane, Subresource, TextureId,
@@ -252,15 +252,10 @@ impl Fill {
 }
 
 fn fill_color(tile: &mut ColorTile<'_>, f: Format, v: [u32; 4]) {
+    let v = to_stored(f, v);
     match tile {
         ColorTile::B8(b) => b.fill(Block([v[0] as u8; 64])),
-        ColorTile::B16(b) if f == Format::Rg8Unorm => {
-            b.fill(Block([(v[0] | v[1] << 8) as u16; 64]))
-        }
         ColorTile::B16(b) => b.fill(Block([v[0] as u16; 64])),
-        ColorTile::B32(b) if f == Format::Rgba8Unorm => {
-            b.fill(Block([u32::from_le_bytes(v.map(|c| c as u8)); 64]));
-        }
         ColorTile::B32(b) => b.fill(Block([v[0]; 64])),
         ColorTile::B16x4(b) => b.fill(Block4(v.map(|c| [c as u16; 64]))),
         ColorTile::B32x4(b) => b.fill(Block4(v.map(|c| [c; 64]))),

@@ -5,7 +5,7 @@ pub(crate) mod lanes;
 mod scalar;
 
 pub use scalar::*;
-pub(crate) use scalar::{decode, encode, encode_depth};
+pub(crate) use scalar::{decode, encode, encode_depth, from_stored, to_stored};
 
 /// Format of a colour attachment or texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -62,7 +62,13 @@ impl Format {
         match self {
             Self::Rg8Unorm => 2,
             Self::Rgba8Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
-            _ => 1,
+            Self::R8Unorm
+            | Self::R16Sint
+            | Self::R16Float
+            | Self::R32Float
+            | Self::R32Uint
+            | Self::Depth24Stencil8
+            | Self::Depth32FloatStencil8 => 1,
         }
     }
 

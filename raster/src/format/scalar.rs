@@ -123,6 +123,40 @@ pub(crate) fn decode(f: Format, t: [u32; 4]) -> [f32; 4] {
     }
 }
 
+/// Raw channels as they are stored: formats of several bytes in one word, red lowest.
+pub(crate) fn to_stored(f: Format, t: [u32; 4]) -> [u32; 4] {
+    match f {
+        Format::Rg8Unorm => [t[0] & 0xff | (t[1] & 0xff) << 8, 0, 0, 0],
+        Format::Rgba8Unorm => [u32::from_le_bytes(t.map(|c| c as u8)), 0, 0, 0],
+        Format::R8Unorm
+        | Format::R16Sint
+        | Format::R16Float
+        | Format::Rgba16Float
+        | Format::R32Float
+        | Format::Rgba32Float
+        | Format::R32Uint
+        | Format::Depth24Stencil8
+        | Format::Depth32FloatStencil8 => t,
+    }
+}
+
+/// The raw channels of what [`to_stored`] gives.
+pub(crate) fn from_stored(f: Format, t: [u32; 4]) -> [u32; 4] {
+    match f {
+        Format::Rg8Unorm => [t[0] & 0xff, t[0] >> 8 & 0xff, 0, 0],
+        Format::Rgba8Unorm => t[0].to_le_bytes().map(u32::from),
+        Format::R8Unorm
+        | Format::R16Sint
+        | Format::R16Float
+        | Format::Rgba16Float
+        | Format::R32Float
+        | Format::Rgba32Float
+        | Format::R32Uint
+        | Format::Depth24Stencil8
+        | Format::Depth32FloatStencil8 => t,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -188,32 +188,25 @@ fn gather<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &Chunk, packet: &Packet
     Corners { x, y, z }
 }
 
+/// ```text
+/// facing of 16 triangles by their area; without those degenerate or culled
+/// depth planes and bounds; without those that touch no pixel that may be drawn
+/// edges; of small triangles the mask of the 8×8 window that they fit in;
+///     without those whose mask is empty
+/// of the others the edges' constants
+/// a table with a column for each number and a row for each triangle
+/// ```
+///
+/// Each step ends early where no triangle is left.
 #[inline(always)]
 fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, packet: &Packet) {
     let state = input.state;
     let q = gather(l, input, chunk, packet);
-    let present = Mask::from_bits(l, ((1u32 << packet.len) - 1) as u16);
-
-    let area = outlined(
-        l,
-        #[inline(always)]
-        || doubled_area(&q),
-    );
-    let zero = F64::splat(l, 0.0);
-    let negative = area.lt(zero);
-    let positive = zero.lt(area);
-    let degenerate = present & !(negative | positive);
-    let clockwise = if state.front_face == FrontFace::Ccw {
-        negative.bits()
-    } else {
-        positive.bits()
-    };
-    let front = clockwise | packet.widened;
-    let culled = facing_to_cull(state, front) & !packet.widened & (present & !degenerate).bits();
-    let alive = present.bits() & !degenerate.bits() & !culled;
+    let facing = Facing::new(l, state, packet, &q);
+    let alive = facing.drawn;
     let c = &mut chunk.counters;
-    c.degenerate += u64::from(degenerate.bits().count_ones());
-    c.face_culled += u64::from(culled.count_ones());
+    c.degenerate += u64::from(facing.degenerate.count_ones());
+    c.face_culled += u64::from(facing.culled.count_ones());
     c.rasterized += u64::from(alive.count_ones());
     if alive == 0 {
         return;
@@ -236,7 +229,7 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, packe
     let directed = outlined(
         l,
         #[inline(always)]
-        || Directed::new(l, &q, negative),
+        || Directed::new(l, &q, facing.negative),
     );
     let small = alive & bounds.small;
     let mask = if small != 0 {
@@ -266,12 +259,61 @@ fn packet_lanes<L: Lanes>(l: L, input: &ChunkInput<'_>, chunk: &mut Chunk, packe
         l,
         #[inline(always)]
         || {
-            rows(
-                l, packet, &q, &bounds, mask, small, front, state, &depth, &directed, &c,
-            )
+            let table = Table {
+                packet,
+                q: &q,
+                bounds: &bounds,
+                mask,
+                small,
+                front: facing.front,
+                depth: &depth,
+                directed: &directed,
+                constants: &c,
+            };
+            table.rows(l, state)
         },
     );
     emit(chunk, input, alive, alive & small, &bounds, &rows);
+}
+
+/// Which way the triangles turn, and what is left of them.
+struct Facing<L: Lanes> {
+    /// Those of negative area.
+    negative: Mask<L>,
+    front: u16,
+    degenerate: u16,
+    culled: u16,
+    /// Neither degenerate nor culled.
+    drawn: u16,
+}
+
+impl<L: Lanes> Facing<L> {
+    #[inline(always)]
+    fn new(l: L, state: &GeometryState, packet: &Packet, q: &Corners<L>) -> Self {
+        let present = ((1u32 << packet.len) - 1) as u16;
+        let area = outlined(
+            l,
+            #[inline(always)]
+            || doubled_area(q),
+        );
+        let zero = F64::splat(l, 0.0);
+        let (negative, positive) = (area.lt(zero), zero.lt(area));
+        let some = (negative | positive).bits() & present;
+        let clockwise = if state.front_face == FrontFace::Ccw {
+            negative.bits()
+        } else {
+            positive.bits()
+        };
+        let front = clockwise | packet.widened;
+        let culled = facing_to_cull(state, front) & !packet.widened & some;
+        Self {
+            negative,
+            front,
+            degenerate: present & !some,
+            culled,
+            drawn: some & !culled,
+        }
+    }
 }
 
 fn facing_to_cull(state: &GeometryState, front: u16) -> u16 {
@@ -566,76 +608,86 @@ fn last_pixel<L: Lanes>(v: &[F32<L>; 3]) -> I32<L> {
     (high - I32::splat(v[0].l, 128)) >> 8
 }
 
-/// The 16 triangles, in memory.
-#[inline(always)]
-#[allow(
-    clippy::too_many_arguments,
-    reason = "the columns of one table; splitting it would only hide that"
-)]
-fn rows<L: Lanes>(
-    l: L,
-    packet: &Packet,
-    q: &Corners<L>,
-    bounds: &Bounds<L>,
+/// What is stored of 16 triangles, by column.
+struct Table<'a, L: Lanes> {
+    packet: &'a Packet,
+    q: &'a Corners<L>,
+    bounds: &'a Bounds<L>,
     mask: [U32<L>; 2],
     small: u16,
     front: u16,
-    state: &GeometryState,
-    d: &DepthPlanes<L>,
-    e: &Directed<L>,
-    c: &[F64<L>; 3],
-) -> [[[u32; LANES]; LANES]; 2] {
-    let zero = U32::splat(l, 0);
-    let small = Mask::from_bits(l, small);
-    let far = if state.depth_clamp { 0 } else { packet.far };
-    let flags = flag(l, front, FRONT) | flag(l, far, FAR) | flag(l, d.steep, STEEP);
-    let (zx, zy, bias) = (d.zx.words(), d.zy.words(), d.bias.words());
-    let (c0, c1, c2) = (c[0].words(), c[1].words(), c[2].words());
-    let hot = [
-        small.select_u32(mask[0], zero),
-        small.select_u32(mask[1], zero),
-        halves(bounds.corner[0], bounds.corner[1]),
-        halves(bounds.corner[2], bounds.corner[3]),
-        zx.0,
-        zx.1,
-        zy.0,
-        zy.1,
-        q.x[0].to_bits(),
-        q.y[0].to_bits(),
-        q.z[0].to_bits(),
-        d.slope[0].to_u32(),
-        d.slope[1].to_u32(),
-        U32::from_array(l, &packet.primitive),
-        U32::from_array(l, &packet.piece) | flags,
-        U32::from_array(l, &packet.v[0]),
-    ];
-    let cold = [
-        U32::from_array(l, &packet.v[1]),
-        U32::from_array(l, &packet.v[2]),
-        c0.0,
-        c0.1,
-        c1.0,
-        c1.1,
-        c2.0,
-        c2.1,
-        e.dx[0].to_i32().to_u32(),
-        e.dx[1].to_i32().to_u32(),
-        e.dx[2].to_i32().to_u32(),
-        e.dy[0].to_i32().to_u32(),
-        e.dy[1].to_i32().to_u32(),
-        e.dy[2].to_i32().to_u32(),
-        bias.0,
-        bias.1,
-    ];
-    let mut rows = [[[0; LANES]; LANES]; 2];
-    for (half, columns) in rows.iter_mut().zip([hot, cold]) {
-        outlined(
-            l,
-            #[inline(always)]
-            || transpose(&columns, half),
-        );
+    depth: &'a DepthPlanes<L>,
+    directed: &'a Directed<L>,
+    constants: &'a [F64<L>; 3],
+}
+
+impl<L: Lanes> Table<'_, L> {
+    /// The triangles, as they lie in memory.
+    #[inline(always)]
+    fn rows(&self, l: L, state: &GeometryState) -> [[[u32; LANES]; LANES]; 2] {
+        let &Table {
+            packet,
+            q,
+            bounds,
+            mask,
+            small,
+            front,
+            depth: d,
+            directed: e,
+            constants: c,
+        } = self;
+        let zero = U32::splat(l, 0);
+        let small = Mask::from_bits(l, small);
+        let far = if state.depth_clamp { 0 } else { packet.far };
+        let flags = flag(l, front, FRONT) | flag(l, far, FAR) | flag(l, d.steep, STEEP);
+        let (zx, zy, bias) = (d.zx.words(), d.zy.words(), d.bias.words());
+        let (c0, c1, c2) = (c[0].words(), c[1].words(), c[2].words());
+        let hot = [
+            small.select_u32(mask[0], zero),
+            small.select_u32(mask[1], zero),
+            halves(bounds.corner[0], bounds.corner[1]),
+            halves(bounds.corner[2], bounds.corner[3]),
+            zx.0,
+            zx.1,
+            zy.0,
+            zy.1,
+            q.x[0].to_bits(),
+            q.y[0].to_bits(),
+            q.z[0].to_bits(),
+            d.slope[0].to_u32(),
+            d.slope[1].to_u32(),
+            U32::from_array(l, &packet.primitive),
+            U32::from_array(l, &packet.piece) | flags,
+            U32::from_array(l, &packet.v[0]),
+        ];
+        let cold = [
+            U32::from_array(l, &packet.v[1]),
+            U32::from_array(l, &packet.v[2]),
+            c0.0,
+            c0.1,
+            c1.0,
+            c1.1,
+            c2.0,
+            c2.1,
+            e.dx[0].to_i32().to_u32(),
+            e.dx[1].to_i32().to_u32(),
+            e.dx[2].to_i32().to_u32(),
+            e.dy[0].to_i32().to_u32(),
+            e.dy[1].to_i32().to_u32(),
+            e.dy[2].to_i32().to_u32(),
+            bias.0,
+            bias.1,
+        ];
+        let mut rows = [[[0; LANES]; LANES]; 2];
+        for (half, columns) in rows.iter_mut().zip([hot, cold]) {
+            outlined(
+                l,
+                #[inline(always)]
+                || transpose(&columns, half),
+            );
+        }
+        rows
     }
-    rows
 }
 
 /// `flag` in the lanes of `bits`, in the upper half of the word.

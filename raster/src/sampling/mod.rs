@@ -6,8 +6,6 @@ mod cube;
 mod fetch;
 mod lod;
 mod sample;
-#[cfg(test)]
-mod twin;
 
 use crate::state::Sampler;
 use crate::texture::Texture;

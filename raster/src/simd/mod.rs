@@ -14,9 +14,12 @@
 
 mod double;
 mod float;
+#[cfg(target_arch = "x86_64")]
+mod half;
 mod int;
 mod level;
 mod mask;
+mod short;
 
 pub(crate) use double::{F64, round_to_i32};
 pub use float::F32;
@@ -24,8 +27,9 @@ pub use int::{I32, U32};
 pub(crate) use level::with_lanes;
 pub use level::{SimdLevel, UnknownSimdLevel};
 pub use mask::Mask;
+pub(crate) use short::{Mask16, U16};
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, f32x16, u16x16};
 
 /// Logical lanes of a packet, whatever the width of the machine's registers.
 pub const LANES: usize = 16;
@@ -61,8 +65,23 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// What every float operation's result passes through; the identity for
     /// full precision.
     #[inline(always)]
-    fn round(self, v: fearless_simd::f32x16<Self::Isa>) -> fearless_simd::f32x16<Self::Isa> {
+    fn round(self, v: f32x16<Self::Isa>) -> f32x16<Self::Isa> {
         v
+    }
+
+    /// Halves of floats by an instruction, ties to even; `None` where there is none. A
+    /// NaN stays some NaN.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn half_from_float(self, _v: f32x16<Self::Isa>) -> Option<u16x16<Self::Isa>> {
+        None
+    }
+
+    /// The reverse, exact.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn float_from_half(self, _h: u16x16<Self::Isa>) -> Option<f32x16<Self::Isa>> {
+        None
     }
 }
 
@@ -113,7 +132,7 @@ impl Lanes for fearless_simd::Fallback {
 }
 
 macro_rules! isa {
-    ($($arch:literal: $($level:ident)*;)*) => {$($(
+    ($($arch:literal: $($level:ident $({ $($method:tt)* })?)*;)*) => {$($(
         #[cfg(target_arch = $arch)]
         impl Lanes for fearless_simd::$level {
             type Isa = Self;
@@ -122,10 +141,35 @@ macro_rules! isa {
             fn isa(self) -> Self {
                 self
             }
+
+            $($($method)*)?
         }
     )*)*};
 }
 isa! {
-    "x86_64": Sse2 Avx2 Avx512;
+    "x86_64":
+        Sse2
+        Avx2 {
+            #[inline(always)]
+            fn half_from_float(self, v: f32x16<Self>) -> Option<u16x16<Self>> {
+                Some(half::half_from_float_avx2(self, v))
+            }
+
+            #[inline(always)]
+            fn float_from_half(self, h: u16x16<Self>) -> Option<f32x16<Self>> {
+                Some(half::float_from_half_avx2(self, h))
+            }
+        }
+        Avx512 {
+            #[inline(always)]
+            fn half_from_float(self, v: f32x16<Self>) -> Option<u16x16<Self>> {
+                Some(half::half_from_float_avx512(self, v))
+            }
+
+            #[inline(always)]
+            fn float_from_half(self, h: u16x16<Self>) -> Option<f32x16<Self>> {
+                Some(half::float_from_half_avx512(self, h))
+            }
+        };
     "aarch64": Neon;
 }

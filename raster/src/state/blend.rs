@@ -117,6 +117,21 @@ impl BlendComponent {
     };
 }
 
+impl BlendComponent {
+    /// The operation takes an operand as it is, whatever the factors.
+    #[inline(always)]
+    pub(crate) fn is_extreme(&self) -> bool {
+        matches!(self.operation, BlendOperation::Min | BlendOperation::Max)
+    }
+
+    /// No operand is changed by its factor.
+    #[inline(always)]
+    pub(crate) fn is_plain(&self) -> bool {
+        let ones = self.src_factor == BlendFactor::One && self.dst_factor == BlendFactor::One;
+        self.is_extreme() || ones
+    }
+}
+
 /// Blending of one colour attachment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BlendState {
@@ -128,17 +143,16 @@ pub struct BlendState {
 
 impl BlendState {
     /// The operation, where it is the same for all channels and needs no factors.
+    #[inline(always)]
     pub(crate) fn bytewise(&self) -> Option<BlendOperation> {
-        let one = |c: &BlendComponent| {
-            c.src_factor == BlendFactor::One && c.dst_factor == BlendFactor::One
-        };
-        let free = matches!(
-            self.color.operation,
-            BlendOperation::Min | BlendOperation::Max
-        );
-        (self.color.operation == self.alpha.operation
-            && (free || (one(&self.color) && one(&self.alpha))))
-        .then_some(self.color.operation)
+        let plain = self.color.is_plain() && self.alpha.is_plain();
+        (plain && self.color.operation == self.alpha.operation).then_some(self.color.operation)
+    }
+
+    /// What applies to channel `c` (3 is alpha).
+    #[inline(always)]
+    pub(crate) fn component(&self, c: usize) -> &BlendComponent {
+        if c < 3 { &self.color } else { &self.alpha }
     }
 
     /// dst + src, saturating.

@@ -1,7 +1,7 @@
 //! Storage of one subresource: an aspect a plane, a plane in 8×8 blocks.
 
 use super::Layout;
-use crate::format::Format;
+use crate::format::{Format, from_stored, to_stored};
 
 /// 64 values of one block, row by row; a cache line or more of its own.
 #[derive(Clone, Copy)]
@@ -87,31 +87,22 @@ impl ColorBlocks {
     /// Raw channels of a texel; unused ones are 0.
     #[inline(always)]
     pub(crate) fn get(&self, format: Format, (b, i): (usize, usize)) -> [u32; 4] {
-        match self {
+        let stored = match self {
             Self::B8(v) => [u32::from(v[b].0[i]), 0, 0, 0],
-            Self::B16(v) if format == Format::Rg8Unorm => {
-                let t = u32::from(v[b].0[i]);
-                [t & 255, t >> 8, 0, 0]
-            }
             Self::B16(v) => [u32::from(v[b].0[i]), 0, 0, 0],
-            Self::B32(v) if format == Format::Rgba8Unorm => v[b].0[i].to_le_bytes().map(u32::from),
             Self::B32(v) => [v[b].0[i], 0, 0, 0],
             Self::B16x4(v) => core::array::from_fn(|c| u32::from(v[b].0[c][i])),
             Self::B32x4(v) => core::array::from_fn(|c| v[b].0[c][i]),
-        }
+        };
+        from_stored(format, stored)
     }
 
     /// Stores raw channels.
     pub(crate) fn set(&mut self, format: Format, (b, i): (usize, usize), t: [u32; 4]) {
+        let t = to_stored(format, t);
         match self {
             Self::B8(v) => v[b].0[i] = t[0] as u8,
-            Self::B16(v) if format == Format::Rg8Unorm => {
-                v[b].0[i] = (t[0] & 255 | t[1] << 8) as u16
-            }
             Self::B16(v) => v[b].0[i] = t[0] as u16,
-            Self::B32(v) if format == Format::Rgba8Unorm => {
-                v[b].0[i] = u32::from_le_bytes(t.map(|c| c as u8))
-            }
             Self::B32(v) => v[b].0[i] = t[0],
             Self::B16x4(v) => (0..4).for_each(|c| v[b].0[c][i] = t[c] as u16),
             Self::B32x4(v) => (0..4).for_each(|c| v[b].0[c][i] = t[c]),

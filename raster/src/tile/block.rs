@@ -4,14 +4,14 @@
 use super::config::{DrawConfig, StencilFace};
 use super::depth::{self, Decision, Decisions, DepthBlock, GroupDepth};
 use super::shade::VaryingCache;
-use super::target::{DepthTile, TileTarget};
-use super::{COUNT, ChunkRef, TileStageCounters, output, shade, stencil};
+use super::target::TileTarget;
+use super::{COUNT, ChunkRef, TileStageCounters, depth_test, output, shade, stencil};
 use crate::geometry::Triangle;
 use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput};
 use crate::simd::{I32, LANES, Lanes, Mask, SimdLevel, outlined};
 use crate::state::CompareFunction;
-use crate::texture::{Block, HIZ_STALE};
+use crate::texture::Block;
 
 /// What the triangles of one bin share.
 pub(super) struct Env<'a, 't> {
@@ -154,6 +154,13 @@ fn refresh<L: Lanes>(l: L, env: &mut Env<'_, '_>, slots: &[i32; LANES], stale: u
 /// Runs those blocks of a group whose depths nobody needs to look at, and gives
 /// them: thrown away by zmin/zmax, or decided with at most one stencil count to
 /// add. `mask` gives the covered pixels of a block.
+///
+/// ```text
+/// thrown = blocks that zmin/zmax fail, where that has no effect
+/// if depth is not written, nothing is shaded, and the stencil only counts:
+///     pass, fail = the blocks whose test is decided
+///     add their counts to all of a full block, or to its covered pixels
+/// ```
 #[inline(always)]
 pub(super) fn run_group<L: Lanes>(
     l: L,
@@ -163,86 +170,104 @@ pub(super) fn run_group<L: Lanes>(
     mask: impl Fn(usize) -> u64,
 ) -> u16 {
     let config = env.config;
-    let c = &mut *env.counters;
-    let &Group {
-        alive,
-        full,
-        decided,
-        ..
-    } = group;
-    let mut done = 0;
-    if config.hiz && !face.acts_on_depth_failure() {
-        done = alive & decided.fail;
-        if COUNT && done != 0 {
-            let (mut blocks, mut pixels) = whole(done & full);
-            each_block(
-                done & !full,
-                #[inline(always)]
-                |i| tally(&mut blocks, &mut pixels, mask(i)),
-            );
-            c.fragments.generated += pixels;
-            c.fragments.hiz_killed += pixels;
-            c.tiles.tested += blocks;
-            c.tiles.culled += blocks;
-        }
-    }
+    let thrown = if config.hiz && !face.acts_on_depth_failure() {
+        throw_away(env, group, &mask)
+    } else {
+        0
+    };
     if config.shader.is_some() || config.depth_write || !config.attached {
-        return done;
+        return thrown;
     }
     let Some([on_fail, on_pass]) = face.counts else {
-        return done;
+        return thrown;
     };
+    let &Group { alive, decided, .. } = group;
     let (pass, fail) = match config.compare {
         CompareFunction::Always => (alive, 0),
         CompareFunction::Never => (0, alive),
-        _ => (alive & decided.pass, alive & decided.fail & !done),
+        _ => (alive & decided.pass, alive & decided.fail & !thrown),
     };
-    let d = env.target.depth.as_mut().expect("attached");
-    for (run, step, failed) in [(pass, on_pass, false), (fail, on_fail, true)] {
-        if run == 0 {
-            continue;
+    count_stencil(l, env, group, pass, on_pass, false, &mask);
+    count_stencil(l, env, group, fail, on_fail, true, &mask);
+    thrown | pass | fail
+}
+
+/// Counts the blocks that zmin/zmax throw away, and gives them.
+#[inline(always)]
+fn throw_away(env: &mut Env<'_, '_>, group: &Group<'_>, mask: &impl Fn(usize) -> u64) -> u16 {
+    let thrown = group.alive & group.decided.fail;
+    if COUNT && thrown != 0 {
+        let (mut blocks, mut pixels) = whole(thrown & group.full);
+        each_block(
+            thrown & !group.full,
+            #[inline(always)]
+            |i| tally(&mut blocks, &mut pixels, mask(i)),
+        );
+        let c = &mut *env.counters;
+        c.fragments.generated += pixels;
+        c.fragments.hiz_killed += pixels;
+        c.tiles.tested += blocks;
+        c.tiles.culled += blocks;
+    }
+    thrown
+}
+
+/// Adds `step` to the stencil of the covered pixels of the blocks of `run`, which have
+/// all passed the depth test or all `failed` it.
+#[inline(always)]
+fn count_stencil<L: Lanes>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    group: &Group<'_>,
+    run: u16,
+    step: i8,
+    failed: bool,
+    mask: &impl Fn(usize) -> u64,
+) {
+    if run == 0 {
+        return;
+    }
+    let config = env.config;
+    let full = run & group.full;
+    let (mut blocks, mut pixels) = whole(full);
+    if step != 0 {
+        let d = env.target.depth.as_mut().expect("attached");
+        each_block(
+            full,
+            #[inline(always)]
+            |i| stencil::add_to_all(l, &mut d.stencil[group.slots[i] as usize], step),
+        );
+        each_block(
+            run & !full,
+            #[inline(always)]
+            |i| {
+                let m = mask(i);
+                tally(&mut blocks, &mut pixels, m);
+                stencil::add(l, &mut d.stencil[group.slots[i] as usize], m, step);
+            },
+        );
+    } else if COUNT {
+        each_block(
+            run & !full,
+            #[inline(always)]
+            |i| tally(&mut blocks, &mut pixels, mask(i)),
+        );
+    }
+    if COUNT {
+        let c = &mut *env.counters;
+        c.fragments.generated += pixels;
+        if failed {
+            c.fragments.depth_failed += pixels;
         }
-        let (mut blocks, mut pixels) = whole(run & full);
-        if step == 0 {
-            if COUNT {
-                each_block(
-                    run & !full,
-                    #[inline(always)]
-                    |i| tally(&mut blocks, &mut pixels, mask(i)),
-                );
-            }
-        } else {
-            each_block(
-                run & full,
-                #[inline(always)]
-                |i| stencil::add_to_all(l, &mut d.stencil[group.slots[i] as usize], step),
-            );
-            each_block(
-                run & !full,
-                #[inline(always)]
-                |i| {
-                    let m = mask(i);
-                    tally(&mut blocks, &mut pixels, m);
-                    stencil::add(l, &mut d.stencil[group.slots[i] as usize], m, step);
-                },
-            );
+        if config.hiz {
+            c.tiles.tested += blocks;
+            c.tiles.accepted += blocks;
         }
-        if COUNT {
-            c.fragments.generated += pixels;
-            if failed {
-                c.fragments.depth_failed += pixels;
-            }
-            if config.hiz {
-                c.tiles.tested += blocks;
-                c.tiles.accepted += blocks;
-            }
-            if config.counting.is_none() && step != 0 {
-                c.accesses.stencil_read += pixels;
-                c.accesses.stencil_write += pixels;
-            }
+        if config.counting.is_none() && step != 0 {
+            c.accesses.stencil_read += pixels;
+            c.accesses.stencil_write += pixels;
         }
     }
-    done | pass | fail
 }
 
 /// How many blocks and pixels.
@@ -561,7 +586,14 @@ fn tests<L: Lanes, const D24: bool>(
                 count(&mut c.accesses.z_read, stencil_pass);
                 access.z_read = stencil_pass;
             }
-            compare_block(l, config.compare, depths, stored, stencil_pass) & stencil_pass
+            let passed = depth_test::compare(
+                l,
+                config.compare,
+                stored,
+                #[inline(always)]
+                |k| fragment_depth(l, depths, k),
+            );
+            passed & stencil_pass
         }
     };
     count(&mut c.fragments.depth_failed, stencil_pass & !depth_pass);
@@ -577,39 +609,23 @@ fn tests<L: Lanes, const D24: bool>(
     if config.depth_write && depth_pass != 0 {
         access.z_write = depth_pass;
         access.hiz_write = true;
-        write_depth(l, config, c, d, place.index, depths, inside, depth_pass);
+        let span = match depths {
+            Depths::Plane(p) if depth_pass == u64::MAX && inside == u64::MAX => Some(p.span()),
+            _ => None,
+        };
+        depth_test::write(
+            l,
+            config,
+            c,
+            d,
+            place.index,
+            span,
+            depth_pass,
+            #[inline(always)]
+            |k| fragment_depth(l, depths, k),
+        );
     }
     depth_pass
-}
-
-/// Writes depth where `mask` is set, and keeps zmin/zmax or marks them stale.
-#[inline(always)]
-#[allow(
-    clippy::too_many_arguments,
-    reason = "the inputs of one pipeline stage"
-)]
-fn write_depth<L: Lanes, const D24: bool>(
-    l: L,
-    config: &DrawConfig<'_>,
-    c: &mut TileStageCounters,
-    d: &mut DepthTile<'_>,
-    index: usize,
-    depths: &Depths<D24>,
-    inside: u64,
-    mask: u64,
-) {
-    if COUNT {
-        c.accesses.hiz_write += 1;
-    }
-    if !config.lean {
-        count(&mut c.accesses.z_write, mask);
-    }
-    let same = write_block(l, config.compare, depths, &mut d.depth[index], mask);
-    count(&mut c.events.silent_z_writes, same);
-    [d.hiz_min[index], d.hiz_max[index]] = match depths {
-        Depths::Plane(p) if mask == u64::MAX && inside == u64::MAX => p.span(),
-        _ => HIZ_STALE,
-    };
 }
 
 #[inline(always)]
@@ -634,89 +650,6 @@ fn fragment_depth<L: Lanes, const D24: bool>(l: L, depths: &Depths<D24>, k: usiz
         Depths::Plane(p) => p.packet(l, k),
         Depths::Shader(b) => depth::load(l, b, k),
     }
-}
-
-#[inline(always)]
-fn compare_plane<L: Lanes, const D24: bool>(
-    l: L,
-    f: CompareFunction,
-    plane: &DepthBlock<D24>,
-    stored: &Block<u32>,
-    mask: u64,
-) -> u64 {
-    if f == CompareFunction::Less {
-        return packets(
-            #[inline(always)]
-            |k| match (mask >> (16 * k)) as u16 {
-                0 => 0,
-                _ => plane.packet(l, k).lt(depth::load(l, stored, k)).bits(),
-            },
-        );
-    }
-    let (mut less, mut equal) = (0, 0);
-    for k in 0..PACKETS {
-        if (mask >> (16 * k)) as u16 == 0 {
-            continue;
-        }
-        let (z, s) = (plane.packet(l, k), depth::load(l, stored, k));
-        less |= u64::from(z.lt(s).bits()) << (16 * k);
-        equal |= u64::from(z.eq(s).bits()) << (16 * k);
-    }
-    depth::outcome(f, less, equal)
-}
-
-#[inline(always)]
-fn compare_block<L: Lanes, const D24: bool>(
-    l: L,
-    f: CompareFunction,
-    depths: &Depths<D24>,
-    stored: &Block<u32>,
-    mask: u64,
-) -> u64 {
-    match depths {
-        Depths::Plane(p) => compare_plane(l, f, p, stored, mask),
-        Depths::Shader(b) => {
-            let (mut less, mut equal) = (0, 0);
-            for k in 0..PACKETS {
-                let (z, s) = (depth::load(l, b, k), depth::load(l, stored, k));
-                less |= u64::from(z.lt(s).bits()) << (16 * k);
-                equal |= u64::from(z.eq(s).bits()) << (16 * k);
-            }
-            depth::outcome(f, less, equal)
-        }
-    }
-}
-
-/// Writes depth where `mask` is set; gives the pixels whose depth stayed the same.
-#[inline(always)]
-fn write_block<L: Lanes, const D24: bool>(
-    l: L,
-    f: CompareFunction,
-    depths: &Depths<D24>,
-    stored: &mut Block<u32>,
-    mask: u64,
-) -> u64 {
-    let differs = matches!(
-        f,
-        CompareFunction::Less | CompareFunction::Greater | CompareFunction::NotEqual
-    );
-    packets(
-        #[inline(always)]
-        |k| {
-            let m = (mask >> (16 * k)) as u16;
-            if m == 0 {
-                return 0;
-            }
-            let z = fragment_depth(l, depths, k);
-            let same = if differs || !COUNT {
-                0
-            } else {
-                z.eq(depth::load(l, stored, k)).bits() & m
-            };
-            depth::store(l, stored, k, z, m);
-            same
-        },
-    )
 }
 
 /// Applies the three operations; `outcomes` are the pixels that failed the

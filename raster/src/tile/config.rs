@@ -1,11 +1,13 @@
 //! A draw's state in the form in which the tile stage uses it.
 
-use crate::format::{Format, unorm8_from_f32};
+use crate::format::{Format, encode, to_stored};
 use crate::geometry::{DepthEncoding, Triangle};
 use crate::observer::Wants;
 use crate::sampling::BoundTexture;
 use crate::shader::ErasedFragmentShader;
-use crate::state::{BlendState, ColorWrites, CompareFunction, StencilFaceState, StencilOperation};
+use crate::state::{
+    BlendOperation, BlendState, ColorWrites, CompareFunction, StencilFaceState, StencilOperation,
+};
 
 /// One facing's stencil state.
 #[derive(Clone, Copy, Debug)]
@@ -68,13 +70,15 @@ fn counting(state: &StencilFaceState, effective: [bool; 3]) -> Option<[i8; 2]> {
 pub(crate) struct TargetConfig {
     pub(crate) format: Format,
     pub(crate) blend: Option<BlendState>,
+    /// The operation of blending that works on bytes as they are ([`BlendState::bytewise`]).
+    pub(crate) bytewise: Option<BlendOperation>,
     /// Channels of the format that are written.
     pub(crate) mask: ColorWrites,
     /// The destination is read.
     pub(crate) reads: bool,
-    /// The source as a word of RGBA8, where it is the same everywhere, fits the
-    /// format, and is stored or blended byte by byte.
-    pub(crate) word: Option<u32>,
+    /// The source as it is stored, where it is the same everywhere, fits the format, and
+    /// replaces whole texels or is blended byte by byte.
+    pub(crate) texel: Option<[u32; 4]>,
 }
 
 impl TargetConfig {
@@ -82,10 +86,8 @@ impl TargetConfig {
         let all = (1u8 << format.channels()) - 1;
         let mask = ColorWrites(writes.0 & all);
         let uses_dst = |c: &crate::state::BlendComponent| {
-            use crate::state::{BlendFactor, BlendOperation};
-            matches!(c.operation, BlendOperation::Min | BlendOperation::Max)
-                || c.dst_factor != BlendFactor::Zero
-                || c.src_factor.reads_dst()
+            use crate::state::BlendFactor;
+            c.is_extreme() || c.dst_factor != BlendFactor::Zero || c.src_factor.reads_dst()
         };
         let blends = blend.is_some_and(|b| {
             (mask.0 & 7 != 0 && uses_dst(&b.color)) || (mask.0 & 8 != 0 && uses_dst(&b.alpha))
@@ -93,22 +95,41 @@ impl TargetConfig {
         Self {
             format,
             blend,
+            bytewise: blend.as_ref().and_then(BlendState::bytewise),
             mask,
             reads: mask.0 != 0 && (blends || mask.0 != all),
-            word: None,
+            texel: None,
         }
     }
 
-    /// For fragments of one colour.
+    /// For fragments of one colour: it is converted once, if nothing about that is
+    /// counted at every fragment.
     pub(crate) fn with_constant(self, color: [f32; 4]) -> Self {
-        let bytewise = self.format == Format::Rgba8Unorm
-            && self.mask == ColorWrites::ALL
-            && self.blend.is_none_or(|b| b.bytewise().is_some());
-        let fits = color.iter().all(|c| (0.0..=1.0).contains(c));
+        let whole = self.mask.0 == (1u8 << self.format.channels()) - 1;
+        let bytes = self.format == Format::Rgba8Unorm && self.bytewise.is_some();
+        let direct = self.blend.is_none() || bytes;
+        let stored = whole && direct && fits(self.format, color);
         Self {
-            word: (bytewise && fits).then(|| u32::from_le_bytes(color.map(unorm8_from_f32))),
+            texel: stored.then(|| to_stored(self.format, encode(self.format, color))),
             ..self
         }
+    }
+}
+
+/// Whether conversion changes no channel but by rounding.
+fn fits(format: Format, color: [f32; 4]) -> bool {
+    let channels = &color[..format.channels()];
+    match format {
+        Format::R8Unorm | Format::Rg8Unorm | Format::Rgba8Unorm => {
+            channels.iter().all(|c| (0.0..=1.0).contains(c))
+        }
+        Format::R16Sint => (-32768.0..=32767.0).contains(&color[0]),
+        Format::R16Float
+        | Format::Rgba16Float
+        | Format::R32Float
+        | Format::Rgba32Float
+        | Format::R32Uint => channels.iter().all(|c| !c.is_nan()),
+        Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => false,
     }
 }
 

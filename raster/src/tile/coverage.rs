@@ -351,8 +351,27 @@ impl<L: Lanes> GroupMasks<'_, L> {
     }
 }
 
+/// Blocks, or pixels, whose column and row lie in x0, y0, x1, y1, inclusive.
+#[inline(always)]
+fn between<L: Lanes>([x, y]: [I32<L>; 2], [x0, y0, x1, y1]: [i32; 4]) -> u16 {
+    let l = x.l;
+    let inside = x.ge(I32::splat(l, x0))
+        & x.le(I32::splat(l, x1))
+        & y.ge(I32::splat(l, y0))
+        & y.le(I32::splat(l, y1));
+    inside.bits()
+}
+
 /// Classifies and runs the 4×4 blocks at (gx, gy), which are neighbours in memory
 /// where they are `aligned` to multiples of 4.
+///
+/// ```text
+/// alive = blocks between the bounds that no edge has wholly outside
+/// full = those of them that all edges and the window have wholly inside
+/// decided = what zmin/zmax say of alive
+/// left = alive without those that run_group has dealt with     no depth looked at
+/// for each block of left: run its covered pixels
+/// ```
 #[inline(always)]
 #[allow(
     clippy::too_many_arguments,
@@ -364,34 +383,23 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
     t: &Triangle,
     (e, lanes): (&TileEdges, &EdgeLanes<L>),
     w: &Window,
-    [bx0, by0, bx1, by1]: [i32; 4],
-    [gx, gy]: [i32; 2],
+    bounds: [i32; 4],
+    at: [i32; 2],
     aligned: bool,
 ) {
-    let bx = I32::from_array(l, &GROUP_X) + I32::splat(l, gx);
-    let by = I32::from_array(l, &GROUP_Y) + I32::splat(l, gy);
-    let inside = bx.ge(I32::splat(l, bx0))
-        & bx.le(I32::splat(l, bx1))
-        & by.ge(I32::splat(l, by0))
-        & by.le(I32::splat(l, by1));
-    let origins = lanes.origins(l, e, [gx, gy]);
+    let bx = I32::from_array(l, &GROUP_X) + I32::splat(l, at[0]);
+    let by = I32::from_array(l, &GROUP_Y) + I32::splat(l, at[1]);
+    let origins = lanes.origins(l, e, at);
     let [touched, filled] = lanes.classify(l, &origins);
-    let alive = inside.bits() & touched;
+    let alive = between([bx, by], bounds) & touched;
     if alive == 0 {
         return;
     }
-    let (x, y) = (bx << 3, by << 3);
-    let unclipped = x.ge(I32::splat(l, w.x0))
-        & y.ge(I32::splat(l, w.y0))
-        & x.le(I32::splat(l, w.x1 - 7))
-        & y.le(I32::splat(l, w.y1 - 7));
-    let unclipped = unclipped.bits();
-    let full = alive & filled & unclipped;
-
+    let unclipped = between([bx << 3, by << 3], [w.x0, w.y0, w.x1 - 7, w.y1 - 7]);
     let slots = morton_lanes(bx, by).to_array();
     let depth = env.config.needs_depth.then(
         #[inline(always)]
-        || GroupDepth::<L, D24>::new(l, t, env.target, [gx, gy], env.config.depth_range),
+        || GroupDepth::<L, D24>::new(l, t, env.target, at, env.config.depth_range),
     );
     let mut decided = Decisions::default();
     if env.config.hiz
@@ -399,10 +407,16 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
     {
         decided = block::ask_group(l, env, &slots, aligned, alive, d);
     }
+    let group = Group {
+        slots: &slots,
+        alive,
+        full: alive & filled & unclipped,
+        decided,
+    };
     let masks = GroupMasks {
         lanes,
         window: w,
-        at: [gx, gy],
+        at,
         origins: each3(
             #[inline(always)]
             |k| origins[k].to_array(),
@@ -411,12 +425,6 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
     };
     let mut left = alive;
     if S::DECIDED_GROUPS && !t.is_special() {
-        let group = Group {
-            slots: &slots,
-            alive,
-            full,
-            decided,
-        };
         left &= !block::run_group(
             l,
             env,
@@ -433,10 +441,26 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
         #[inline(always)]
         |d| d.bases(),
     );
+    each_left::<L, S, D24>(l, env, t, &group, &masks, bases.as_ref(), left);
+}
+
+/// Runs the blocks of `left` one by one; `bases` are their depths' at the origin, where
+/// depth is needed.
+#[inline(always)]
+fn each_left<L: Lanes, S: BlockStage, const D24: bool>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    t: &Triangle,
+    group: &Group<'_>,
+    masks: &GroupMasks<'_, L>,
+    bases: Option<&[i32; LANES]>,
+    mut left: u16,
+) {
+    let [gx, gy] = masks.at;
     while left != 0 {
         let i = left.trailing_zeros() as usize;
         left &= left - 1;
-        let m = if full >> i & 1 != 0 {
+        let m = if group.full >> i & 1 != 0 {
             u64::MAX
         } else {
             outlined(
@@ -448,16 +472,16 @@ fn group<L: Lanes, S: BlockStage, const D24: bool>(
         if m == 0 {
             continue;
         }
-        let plane = match &bases {
+        let plane = match bases {
             Some(b) => DepthBlock::<D24>::with_base(t, b[i], env.config.depth_range),
             None => DepthBlock::UNUSED,
         };
         let decision: Option<Decision> = env.config.hiz.then(
             #[inline(always)]
-            || decided.of(i),
+            || group.decided.of(i),
         );
         let place = Place {
-            index: slots[i] as usize,
+            index: group.slots[i] as usize,
             x: env.target.x + 8 * (gx + GROUP_X[i]) as u32,
             y: env.target.y + 8 * (gy + GROUP_Y[i]) as u32,
         };

@@ -2,16 +2,16 @@
 //! no bounds, nobody listening, a stencil that only tests or only counts, tests
 //! before the shader. Same bits and same counters as the general way in `block`.
 
-use super::block::{self, BlockStage, Env, General, Place, count, packets};
+use super::block::{self, BlockStage, Env, General, Place, count};
 use super::config::{DrawConfig, StencilFace};
-use super::depth::{self, Decision, DepthBlock};
+use super::depth::{Decision, DepthBlock};
 use super::target::DepthTile;
-use super::{COUNT, TileStageCounters, output, stencil};
+use super::{TileStageCounters, depth_test, output, stencil};
 use crate::geometry::Triangle;
 use crate::shader::PACKETS;
-use crate::simd::{I32, Lanes, Mask, each4, outlined};
+use crate::simd::{I32, Lanes, outlined};
 use crate::state::CompareFunction;
-use crate::texture::{Block, HIZ_STALE};
+use crate::texture::Block;
 
 /// With a fragment shader, or without.
 pub(super) struct Lean<const SHADED: bool>;
@@ -92,7 +92,7 @@ fn tests<L: Lanes, const D24: bool>(
                     #[inline(always)]
                     || {
                         let z = plane.packets(l);
-                        write_depth(l, config, c, d, place.index, &z, plane, inside, passed);
+                        write(l, config, c, d, place.index, &z, plane, inside, passed);
                     },
                 );
             }
@@ -105,9 +105,16 @@ fn tests<L: Lanes, const D24: bool>(
                 #[inline(always)]
                 || {
                     let z = plane.packets(l);
-                    let passed = compare(l, config.compare, &z, &d.depth[place.index]) & reached;
+                    let passed = depth_test::compare(
+                        l,
+                        config.compare,
+                        &d.depth[place.index],
+                        #[inline(always)]
+                        |k| z[k],
+                    );
+                    let passed = passed & reached;
                     if config.depth_write && passed != 0 {
-                        write_depth(l, config, c, d, place.index, &z, plane, inside, passed);
+                        write(l, config, c, d, place.index, &z, plane, inside, passed);
                     }
                     passed
                 },
@@ -167,41 +174,13 @@ fn add<L: Lanes>(
     }
 }
 
-/// All 64 pixels, covered or not: a branch on which packets matter costs more.
-#[inline(always)]
-fn compare<L: Lanes>(l: L, f: CompareFunction, z: &[I32<L>; PACKETS], stored: &Block<u32>) -> u64 {
-    match f {
-        CompareFunction::Less => packets(
-            #[inline(always)]
-            |k| z[k].lt(depth::load(l, stored, k)).bits(),
-        ),
-        CompareFunction::LessEqual => packets(
-            #[inline(always)]
-            |k| z[k].le(depth::load(l, stored, k)).bits(),
-        ),
-        CompareFunction::Equal => packets(
-            #[inline(always)]
-            |k| z[k].eq(depth::load(l, stored, k)).bits(),
-        ),
-        _ => {
-            let (mut less, mut equal) = (0, 0);
-            for (k, z) in z.iter().enumerate() {
-                let s = depth::load(l, stored, k);
-                less |= u64::from(z.lt(s).bits()) << (16 * k);
-                equal |= u64::from(z.eq(s).bits()) << (16 * k);
-            }
-            depth::outcome(f, less, equal)
-        }
-    }
-}
-
-/// Writes depth where `mask` is set, and keeps zmin/zmax or marks them stale.
+/// Writes the plane's depths where `mask` is set.
 #[inline(always)]
 #[allow(
     clippy::too_many_arguments,
     reason = "the inputs of one pipeline stage"
 )]
-fn write_depth<L: Lanes, const D24: bool>(
+fn write<L: Lanes, const D24: bool>(
     l: L,
     config: &DrawConfig<'_>,
     c: &mut TileStageCounters,
@@ -212,30 +191,17 @@ fn write_depth<L: Lanes, const D24: bool>(
     inside: u64,
     mask: u64,
 ) {
-    if COUNT {
-        c.accesses.hiz_write += 1;
-    }
-    let stored = &mut d.depth[index];
-    let differs = matches!(
-        config.compare,
-        CompareFunction::Less | CompareFunction::Greater | CompareFunction::NotEqual
+    let whole = mask == u64::MAX && inside == u64::MAX;
+    let span = if whole { Some(plane.span()) } else { None };
+    depth_test::write(
+        l,
+        config,
+        c,
+        d,
+        index,
+        span,
+        mask,
+        #[inline(always)]
+        |k| z[k],
     );
-    if COUNT && !differs {
-        let same = each4(
-            #[inline(always)]
-            |k| {
-                let m = Mask::from_bits(l, (mask >> (16 * k)) as u16);
-                z[k].eq(depth::load(l, stored, k)) & m
-            },
-        );
-        block::count_lanes(&mut c.events.silent_z_writes, &same);
-    }
-    for (k, z) in z.iter().enumerate() {
-        depth::store(l, stored, k, *z, (mask >> (16 * k)) as u16);
-    }
-    [d.hiz_min[index], d.hiz_max[index]] = if mask == u64::MAX && inside == u64::MAX {
-        plane.span()
-    } else {
-        HIZ_STALE
-    };
 }

@@ -3,7 +3,7 @@
 //! A tile's worker walks the draws, their chunks and the triangles binned to the
 //! tile in submission order. `coverage` finds the 8×8 blocks that a triangle
 //! touches and their 64-bit masks; `block` runs the fixed function of
-//! `docs/rasterisation-rules.md` §7 on a mask, with `depth` and `stencil`, and
+//! `docs/rasterisation-rules.md` §7 on a mask, with `depth`, `depth_test` and `stencil`, and
 //! `lean` does the same for the states that most draws have;
 //! `shade` calls the fragment shader on what is left; `output` blends.
 
@@ -11,6 +11,7 @@ mod block;
 mod config;
 mod coverage;
 mod depth;
+mod depth_test;
 mod lean;
 mod output;
 mod shade;

@@ -11,6 +11,7 @@ mod texture;
 pub use case::random_case;
 pub use geometry::{Screen, grid_triangulation};
 pub use misuse::misuse;
+pub use texture::{sampler as random_sampler, texture as random_texture};
 
 /// PCG-XSH-RR, 64 bits of state, 32 of output.
 #[derive(Clone, Debug)]

@@ -56,7 +56,8 @@ fn sources(case: &TwinCase, pass: &TwinPass) -> Vec<TextureSource> {
     list
 }
 
-pub(super) fn sampler(r: &mut Random) -> Sampler {
+/// A sampler of any kind.
+pub fn sampler(r: &mut Random) -> Sampler {
     const ADDRESS: [AddressMode; 4] = [
         AddressMode::ClampToEdge,
         AddressMode::ClampToBorder,
@@ -80,7 +81,8 @@ pub(super) fn sampler(r: &mut Random) -> Sampler {
     }
 }
 
-fn texture(r: &mut Random) -> TwinTexture {
+/// A texture of any format, shape and size up to 16, with any number of levels.
+pub fn texture(r: &mut Random) -> TwinTexture {
     use TextureDimension::{Cube, D1, D2, D3};
     let format = r.pick(&Format::ALL);
     let dimension = if format.is_depth_stencil() {

@@ -84,7 +84,7 @@ fn decades(low: f64, high: f64) -> Range {
     let ticks = match whole.len() {
         0..=1 => with(&[1.0, 2.0, 3.0, 4.0, 6.0, 8.0]),
         2..=3 => with(&[1.0, 2.0, 5.0]),
-        0..=MOST_TICKS => whole,
+        4..=MOST_TICKS => whole,
         count => {
             let step = count.div_ceil(MOST_TICKS) as i32;
             let shown = powers.clone().filter(|p| p.rem_euclid(step) == 0);

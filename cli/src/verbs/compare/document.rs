@@ -4,10 +4,11 @@ use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 use serde::Serialize;
 
-use super::job::{Entry, Job};
+use super::job::{CompareJob, Entry};
 use super::measure::{Comparison, Measured};
+use super::pixels::count_by_reason;
 use crate::output::json::{
-    FileDocument, Object, WarningDocument, WedgeWorkDocument, worker_threads,
+    FileDocument, Hashes, Object, WarningDocument, WedgeWorkDocument, worker_threads,
 };
 use crate::output::tables;
 
@@ -55,7 +56,7 @@ struct ResultDocument {
     shaded_fragments: u64,
     wedge_work: Option<WedgeWorkDocument>,
     pixels: PixelDocument,
-    hash: HashDocument,
+    hash: Hashes,
     warnings: Vec<WarningDocument>,
 }
 
@@ -77,16 +78,12 @@ struct PixelDocument {
     lit: usize,
     other_surface: usize,
     out_of_range: usize,
-}
-
-#[derive(Serialize)]
-struct HashDocument {
-    color: String,
-    visibility: String,
+    /// By reason; with `compared` all pixels of the picture.
+    left_out: Object<usize>,
 }
 
 impl<'a> CompareDocument<'a> {
-    pub(super) fn new(job: &'a Job, found: &Comparison, files: &'a [FileDocument]) -> Self {
+    pub(super) fn new(job: &'a CompareJob, found: &Comparison, files: &'a [FileDocument]) -> Self {
         let (settings, reference) = (&job.settings, &found.reference);
         let results = job.entries.iter().zip(&found.measured);
         Self {
@@ -143,17 +140,15 @@ impl ResultDocument {
             shaded_fragments: tables::frame_counters(&done.report).fragment_shader_invocations,
             wedge_work: WedgeWorkDocument::of(done),
             pixels: PixelDocument {
-                compared: pixels(score.visibility.all),
+                compared: score.pixels.compared,
                 umbra: pixels(region(umbra)),
                 penumbra: pixels(region(penumbra)),
                 lit: pixels(region(lit)),
-                other_surface: score.other_surface,
+                other_surface: score.pixels.left_out.other_surface(),
                 out_of_range: score.visibility.mask.out_of_range,
+                left_out: count_by_reason(&score.pixels),
             },
-            hash: HashDocument {
-                color: done.color_hash(),
-                visibility: done.visibility_hash(),
-            },
+            hash: Hashes::of(done),
             warnings: done.warnings.iter().map(WarningDocument::new).collect(),
         }
     }

@@ -17,7 +17,7 @@ use crate::verbs;
 pub(super) const DEFAULT_SIZE: [u32; 2] = [640, 480];
 
 /// A comparison, ready to run.
-pub(super) struct Job {
+pub(super) struct CompareJob {
     pub(super) scene: Scene,
     /// Number of the light that shines.
     pub(super) light: usize,
@@ -37,9 +37,9 @@ pub(super) struct Entry {
     pub(super) label: String,
 }
 
-impl Job {
+impl CompareJob {
     pub(super) fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
-        let entries = entries(args, registry, Some(args.light))?;
+        let entries = parse_entries(args, registry, Some(args.light))?;
         let scene = args.scene.open()?.at(args.time)?;
         let (given, count) = (args.light, scene.lights.len());
         if given >= count {
@@ -70,7 +70,7 @@ impl Job {
 }
 
 /// The techniques to compare, under light number `light` alone or under all.
-pub(super) fn entries(
+pub(super) fn parse_entries(
     args: &CompareArgs,
     registry: &Registry,
     light: Option<usize>,

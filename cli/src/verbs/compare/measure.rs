@@ -5,7 +5,7 @@ use std::time::Instant;
 use gnomon_pipeline::measure::comparison::{Aligned, Origin, Reference, Score, ShadingKey, shaded};
 use gnomon_pipeline::measure::render::{Rendered, render};
 
-use super::job::{Entry, Job};
+use super::job::{CompareJob, Entry};
 use crate::error::CliError;
 use crate::output::progress::Progress;
 
@@ -31,7 +31,7 @@ pub(super) struct Measured {
 }
 
 /// Asks the oracle, then renders and measures each entry in turn.
-pub(super) fn run(job: &Job, progress: &Progress) -> Result<Comparison, CliError> {
+pub(super) fn run(job: &CompareJob, progress: &Progress) -> Result<Comparison, CliError> {
     progress.doing("computing the truth");
     let start = Instant::now();
     let reference = Reference::new(
@@ -61,11 +61,12 @@ pub(super) fn run(job: &Job, progress: &Progress) -> Result<Comparison, CliError
 }
 
 impl Comparison {
-    fn measure(&mut self, job: &Job, entry: &Entry) -> Result<(), CliError> {
-        let done = render(&job.scene, entry.technique, &entry.params, &job.settings)?;
+    fn measure(&mut self, job: &CompareJob, entry: &Entry) -> Result<(), CliError> {
+        let mut done = render(&job.scene, entry.technique, &entry.params, &job.settings)?;
         let under = self.reference.under(&done.depth)?;
         let truth = self.picture_of_truth(job, entry, &under)?;
         let score = Score::measure(&under, &done, &self.shaded[truth].1)?;
+        done.warnings.extend(score.pixels.warning());
         self.measured.push(Measured {
             label: entry.label.clone(),
             done,
@@ -79,7 +80,7 @@ impl Comparison {
     /// made where there is none yet.
     fn picture_of_truth(
         &mut self,
-        job: &Job,
+        job: &CompareJob,
         entry: &Entry,
         under: &Aligned,
     ) -> Result<usize, CliError> {

@@ -6,6 +6,7 @@ mod environment;
 mod job;
 mod measure;
 mod picture;
+mod pixels;
 mod run;
 mod table;
 

@@ -1,7 +1,7 @@
 //! The picture: the truth and each technique, shaded; below, the truth's
 //! visibility and each technique's signed error.
 
-use super::job::Job;
+use super::job::CompareJob;
 use super::measure::{Comparison, Measured};
 use crate::draw::diverging::{self, diverging, place};
 use crate::draw::{Canvas, Cell, Grid, Legend, Picture, Swatch};
@@ -15,18 +15,18 @@ const NOTHING: [u8; 3] = [58, 60, 66];
 const OTHER: [u8; 3] = [165, 165, 165];
 
 /// Draws the comparison.
-pub(super) fn draw(job: &Job, found: &Comparison) -> Picture {
+pub(super) fn draw(job: &CompareJob, found: &Comparison) -> Picture {
     let mut cells = vec![truth(job, found)];
     cells.extend(found.measured.iter().map(technique));
     let grid = Grid::new(cells);
     let legend = Legend {
         text_scale: Some(grid.text_scale()),
-        ..legend(found)
+        ..make_legend(found)
     };
     legend.below(grid.draw(), diverging)
 }
 
-fn truth(job: &Job, found: &Comparison) -> Cell {
+fn truth(job: &CompareJob, found: &Comparison) -> Cell {
     let size = job.settings.size;
     let mut pictures = Vec::new();
     if let Some((_, shaded)) = found.shaded.first() {
@@ -97,8 +97,9 @@ fn painted(size: [u32; 2], colours: impl Iterator<Item = [u8; 3]>) -> Canvas {
     })
 }
 
-fn legend(found: &Comparison) -> Legend {
-    let largest = found.measured.iter().map(|m| m.score.other_surface).max();
+fn make_legend(found: &Comparison) -> Legend {
+    let other = |m: &Measured| m.score.pixels.left_out.other_surface();
+    let largest = found.measured.iter().map(other).max();
     let left_out = largest.unwrap_or(0);
     Legend {
         title: "Visibility minus truth: blue is too dark, orange too bright".to_owned(),
@@ -107,7 +108,7 @@ fn legend(found: &Comparison) -> Legend {
             Swatch::new(NOTHING, "no surface"),
             Swatch::new(
                 OTHER,
-                format!("left out: {left_out} pixels at outlines and sharp edges"),
+                format!("left out: {left_out} pixels, at edges or of another surface"),
             ),
         ],
         notes: vec![format!(

@@ -4,7 +4,7 @@ use gnomon_pipeline::techniques::Registry;
 
 use super::args::CompareArgs;
 use super::document::CompareDocument;
-use super::job::Job;
+use super::job::CompareJob;
 use super::measure::{self, Comparison, Measured};
 use super::{environment, picture, table};
 use crate::error::CliError;
@@ -18,7 +18,7 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     if args.environment.env.is_some() {
         return environment::run(args, registry);
     }
-    let job = Job::new(args, registry)?;
+    let job = CompareJob::new(args, registry)?;
     let progress = Progress::new(job.steps());
     let found = measure::run(&job, &progress)?;
     progress.doing("writing the picture");
@@ -33,10 +33,10 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     if args.json {
         output::print_json(&CompareDocument::new(&job, &found, &files))?;
     }
-    output::print_summary(&summary(&job, &found, &files), args.json)
+    output::print_summary(&summarise(&job, &found, &files), args.json)
 }
 
-fn summary(job: &Job, found: &Comparison, files: &[FileDocument]) -> String {
+fn summarise(job: &CompareJob, found: &Comparison, files: &[FileDocument]) -> String {
     let settings = &job.settings;
     let mut text = format!(
         "{}, light {}, {}x{}: {} threads, {}, skipping {}\n{}\n",
@@ -47,12 +47,12 @@ fn summary(job: &Job, found: &Comparison, files: &[FileDocument]) -> String {
         worker_threads(settings.gpu.threads),
         settings.gpu.simd,
         if settings.gpu.skip { "on" } else { "off" },
-        truth(found),
+        describe_truth(found),
     );
-    for table in table::tables_of(&found.measured) {
+    for table in table::tabulate(&found.measured) {
         text += &format!("\n{}", table.to_text());
     }
-    for line in warnings(job, found) {
+    for line in collect_warnings(job, found) {
         text += &format!("warning: {line}\n");
     }
     for file in files {
@@ -62,7 +62,7 @@ fn summary(job: &Job, found: &Comparison, files: &[FileDocument]) -> String {
 }
 
 /// One line about the reference.
-fn truth(found: &Comparison) -> String {
+fn describe_truth(found: &Comparison) -> String {
     let reference = &found.reference;
     let what = match (reference.is_soft, reference.kind.name()) {
         (true, "rays") => "4096 stratified shadow rays a pixel".to_owned(),
@@ -77,7 +77,7 @@ fn truth(found: &Comparison) -> String {
 }
 
 /// Warnings of the cache and of every technique, each once.
-fn warnings(job: &Job, found: &Comparison) -> Vec<String> {
+fn collect_warnings(job: &CompareJob, found: &Comparison) -> Vec<String> {
     let cache = found.reference.warnings.iter().map(|w| w.to_string());
     let mut lines: Vec<String> = cache.collect();
     for (entry, Measured { done, .. }) in job.entries.iter().zip(&found.measured) {

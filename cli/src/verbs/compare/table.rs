@@ -6,6 +6,7 @@ use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 
 use super::measure::Measured;
+use super::pixels;
 use crate::output::numbers::{self, count, error};
 use crate::output::tables::{self, Table};
 
@@ -48,7 +49,7 @@ const FIGURES: &[Figure] = &[
 const NONE: &str = "-";
 
 /// Tables of at most [`COLUMNS`] techniques each.
-pub(super) fn tables_of(measured: &[Measured]) -> Vec<Table> {
+pub(super) fn tabulate(measured: &[Measured]) -> Vec<Table> {
     measured.chunks(COLUMNS).map(table).collect()
 }
 
@@ -64,6 +65,8 @@ fn table(measured: &[Measured]) -> Table {
             .rows
             .push(std::iter::once((*name).to_owned()).chain(cells).collect());
     }
+    let counts: Vec<_> = measured.iter().map(|m| m.score.pixels).collect();
+    table.rows.extend(pixels::tabulate(&counts));
     table
 }
 

@@ -71,18 +71,25 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), CliError> {
     };
     demo.stage_pictures(&progress)?;
     let tables = demo.tables();
-    let notes: Vec<String> = checks.lines().into_iter().chain(warnings(&shots)).collect();
+    let notes: Vec<String> = checks
+        .lines()
+        .into_iter()
+        .chain(collect_warnings(&shots))
+        .collect();
     demo.stage_report(&tables, &notes)?;
     let Demo { batch, files, .. } = demo;
     batch.commit()?;
     drop(progress);
     let seconds = start.elapsed().as_secs_f64();
     if args.json {
-        output::print_json(&document(
+        output::print_json(&make_document(
             args, &scene, &shots, checks, &errors, &files, seconds,
         ))?;
     }
-    output::print_summary(&summary(args, &tables, &notes, &files, seconds), args.json)?;
+    output::print_summary(
+        &summarise(args, &tables, &notes, &files, seconds),
+        args.json,
+    )?;
     checks.verdict()
 }
 
@@ -142,7 +149,7 @@ impl Demo<'_> {
     fn stage_report(&mut self, tables: &[Table], notes: &[String]) -> Result<(), CliError> {
         let report = Report {
             title: "gnomon demo".to_owned(),
-            lead: lead(self.args),
+            lead: describe_run(self.args),
             figures: &self.figures,
             tables,
             notes,
@@ -177,13 +184,13 @@ impl Demo<'_> {
             tables::work(&named),
             tables::traffic(&named),
             self.errors.table(),
-            skipped(self.shots),
+            tabulate_skipping(self.shots),
         ]
     }
 }
 
 /// What skipping saved: frames with it beside frames without.
-fn skipped(shots: &[Shot]) -> Table {
+fn tabulate_skipping(shots: &[Shot]) -> Table {
     let header = [
         "frame",
         "time",
@@ -221,7 +228,7 @@ fn skipped(shots: &[Shot]) -> Table {
     table
 }
 
-fn lead(args: &DemoArgs) -> String {
+fn describe_run(args: &DemoArgs) -> String {
     let gpu = args.gpu.config();
     format!(
         "{}x{} pixels, {} threads, {}, execution tiles of {}, skipping {}; times are medians of {REPEAT} frames",
@@ -235,7 +242,7 @@ fn lead(args: &DemoArgs) -> String {
 }
 
 /// Every frame's warnings.
-fn warnings(shots: &[Shot]) -> impl Iterator<Item = String> {
+fn collect_warnings(shots: &[Shot]) -> impl Iterator<Item = String> {
     shots.iter().flat_map(|shot| {
         let name = shot.entry.name;
         let warnings = shot.done.warnings.iter();
@@ -243,7 +250,7 @@ fn warnings(shots: &[Shot]) -> impl Iterator<Item = String> {
     })
 }
 
-fn document(
+fn make_document(
     args: &DemoArgs,
     scene: &Scene,
     shots: &[Shot],
@@ -271,14 +278,14 @@ fn document(
     }
 }
 
-fn summary(
+fn summarise(
     args: &DemoArgs,
     tables: &[Table],
     notes: &[String],
     files: &[FileDocument],
     seconds: f64,
 ) -> String {
-    let mut text = hanging("", 0, &lead(args));
+    let mut text = hanging("", 0, &describe_run(args));
     for table in tables {
         text += &format!("\n{}", table.to_text());
     }

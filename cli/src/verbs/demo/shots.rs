@@ -7,58 +7,58 @@ use gnomon_pipeline::world::scene::Scene;
 
 use super::args::DemoArgs;
 use crate::error::CliError;
-use crate::output::json::RenderJob;
+use crate::output::json::RenderInputs;
 use crate::output::progress::Progress;
 
 /// Frames timed for each entry.
 pub(super) const REPEAT: u32 = 3;
 
 /// A picture of the demo: file name, technique, settings, what it shows.
-pub(super) struct Entry {
+pub(super) struct DemoEntry {
     pub(super) name: &'static str,
     pub(super) technique: &'static str,
     pub(super) settings: &'static [(&'static str, &'static str)],
     pub(super) caption: &'static str,
 }
 
-pub(super) const ENTRIES: &[Entry] = &[
-    Entry {
+pub(super) const ENTRIES: &[DemoEntry] = &[
+    DemoEntry {
         name: "unshadowed",
         technique: "unshadowed",
         settings: &[],
         caption: "All light everywhere: what shadows are measured against",
     },
-    Entry {
+    DemoEntry {
         name: "zpass",
         technique: "shadow-volumes",
         settings: &[("method", "zpass")],
         caption: "Shadow volumes counted where they pass the depth test",
     },
-    Entry {
+    DemoEntry {
         name: "zfail",
         technique: "shadow-volumes",
         settings: &[("method", "zfail")],
         caption: "Counted where they fail it: right from any point of view, and dearer",
     },
-    Entry {
+    DemoEntry {
         name: "auto",
         technique: "shadow-volumes",
         settings: &[("method", "auto")],
         caption: "The cheaper of the two that is right, caster by caster",
     },
-    Entry {
+    DemoEntry {
         name: "soft",
         technique: "soft-shadow-volumes",
         settings: &[("horizon", "on")],
         caption: "The whole light seen past every silhouette edge: soft shadow volumes",
     },
-    Entry {
+    DemoEntry {
         name: "csm",
         technique: "convolution-soft-shadows",
         settings: &[("horizon", "on")],
         caption: "Soft shadows from one shadow map, filtered as convolutions",
     },
-    Entry {
+    DemoEntry {
         name: "pcss",
         technique: "pcss",
         settings: &[("horizon", "on")],
@@ -68,7 +68,7 @@ pub(super) const ENTRIES: &[Entry] = &[
 
 /// An entry, rendered with and without skipping.
 pub(super) struct Shot {
-    pub(super) entry: &'static Entry,
+    pub(super) entry: &'static DemoEntry,
     pub(super) technique: &'static dyn Technique,
     pub(super) params: Params,
     pub(super) plain_params: Params,
@@ -101,7 +101,7 @@ pub(super) fn settings(args: &DemoArgs, repeat: u32) -> RenderSettings {
 impl Shot {
     pub(super) fn new(
         scene: &Scene,
-        entry: &'static Entry,
+        entry: &'static DemoEntry,
         args: &DemoArgs,
     ) -> Result<Self, CliError> {
         let technique = find(entry.technique)?;
@@ -131,10 +131,10 @@ impl Shot {
         scene: &'a Scene,
         args: &DemoArgs,
         skip: bool,
-    ) -> RenderJob<'a> {
+    ) -> RenderInputs<'a> {
         let mut gpu = args.gpu.config();
         gpu.skip &= skip;
-        RenderJob {
+        RenderInputs {
             scene,
             technique: self.technique,
             params: if skip {

@@ -11,7 +11,7 @@ use gnomon_pipeline::techniques::Registry;
 use serde::Serialize;
 
 use super::args::RenderArgs;
-use super::job::{self, Job, default_out, source};
+use super::job::{self, RenderJob, default_out, source};
 use super::write::write;
 use crate::error::CliError;
 use crate::output;
@@ -44,21 +44,22 @@ struct FrameDocument {
 /// Renders `count` frames.
 pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<(), CliError> {
     check(args)?;
+    let rate = args.fps.unwrap_or(RATE);
+    check_times(args, count, rate)?;
     let technique = registry.find(&args.technique)?;
     job::check_wedges(args, technique, registry)?;
     let params = crate::verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
     let mut source = source(args)?;
-    let rate = args.fps.unwrap_or(RATE);
     let progress = Progress::new(u64::from(count) * (2 + args.overlay.len() as u64));
     let mut table = Table::new("Frames", &["frame", "time", "took", "bytes", "color"]);
     let (mut frames, mut last) = (Vec::new(), None);
     for frame in 0..count {
         progress.doing(format!("frame {frame}"));
-        let time = args.time + f64::from(frame) / rate;
+        let time = time_of(frame, args.time, rate);
         let scene = source.at(time)?;
-        let folder = folder(args, &scene.name);
+        let folder = choose_folder(args, &scene.name);
         let out = folder.join(format!("frame-{frame:04}.png"));
-        let job = Job::of(args, technique, params.clone(), scene, Some(out))?;
+        let job = RenderJob::of(args, technique, params.clone(), scene, Some(out))?;
         let done = render(&job.scene, technique, &params, &job.settings)?;
         progress.step();
         let files = write(&job, args, &done, &progress)?;
@@ -84,7 +85,7 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
             frames,
         })?;
     }
-    output::print_summary(&summary(&job, &done, &files, &table), args.json)
+    output::print_summary(&summarise(&job, &done, &files, &table), args.json)
 }
 
 /// A frame of an animation has no place for one array, nor a folder for one name.
@@ -102,7 +103,23 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
     }
 }
 
-fn folder(args: &RenderArgs, scene: &str) -> PathBuf {
+fn time_of(frame: u32, start: f64, rate: f64) -> f64 {
+    start + f64::from(frame) / rate
+}
+
+/// Frames that are very long may leave the range of numbers.
+fn check_times(args: &RenderArgs, count: u32, rate: f64) -> Result<(), CliError> {
+    if time_of(count - 1, args.time, rate).is_finite() {
+        return Ok(());
+    }
+    Err(CliError::Flag {
+        flag: "--fps",
+        value: rate.to_string(),
+        valid: "the time of the last frame is not finite: give more frames per second".to_owned(),
+    })
+}
+
+fn choose_folder(args: &RenderArgs, scene: &str) -> PathBuf {
     let by_default = || default_out(scene, &args.technique).with_extension("");
     args.out.clone().unwrap_or_else(by_default)
 }
@@ -120,7 +137,7 @@ fn row(frame: u32, time: f64, done: &Rendered) -> Vec<String> {
 }
 
 /// The frames, and the warnings of the last one.
-fn summary(job: &Job, done: &Rendered, files: &[FileDocument], table: &Table) -> String {
+fn summarise(job: &RenderJob, done: &Rendered, files: &[FileDocument], table: &Table) -> String {
     let settings = &job.settings;
     let mut text = format!(
         "{}, {}, {}x{}, {} lights: {} threads, {}, skipping {}\n\n{}",

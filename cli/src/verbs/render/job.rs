@@ -11,14 +11,14 @@ use gnomon_pipeline::world::scene::{Scene, SceneSource};
 use super::args::RenderArgs;
 use crate::error::CliError;
 use crate::output::files;
-use crate::output::json::{FileDocument, RenderDocument, RenderJob};
+use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
 use crate::overlay::{self, OverlayKind};
 use crate::verbs;
 
 const DEFAULT_SIZE: [u32; 2] = [800, 600];
 
 /// Everything the command line asked for, checked.
-pub(super) struct Job {
+pub(super) struct RenderJob {
     pub(super) scene: Scene,
     pub(super) technique: &'static dyn Technique,
     pub(super) params: Params,
@@ -27,7 +27,7 @@ pub(super) struct Job {
     pub(super) overlays: Vec<(OverlayKind, PathBuf)>,
 }
 
-impl Job {
+impl RenderJob {
     pub(super) fn new(args: &RenderArgs, registry: &Registry) -> Result<Self, CliError> {
         let technique = registry.find(&args.technique)?;
         check_wedges(args, technique, registry)?;
@@ -69,7 +69,7 @@ impl Job {
     }
 
     pub(super) fn document(&self, done: &Rendered, files: Vec<FileDocument>) -> RenderDocument {
-        let of = RenderJob {
+        let of = RenderInputs {
             scene: &self.scene,
             technique: self.technique,
             params: &self.params,
@@ -153,14 +153,15 @@ pub(super) fn default_out(scene: &str, technique: &str) -> PathBuf {
 
 /// Each kind once, in the order asked for, beside the render.
 fn overlay_paths(kinds: &[OverlayKind], out: &Path) -> Vec<(OverlayKind, PathBuf)> {
-    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let name = |kind: &OverlayKind| {
+        let mut name = out.file_stem().unwrap_or_default().to_owned();
+        name.push(format!("-{}.png", kind.name()));
+        name
+    };
     let mut paths: Vec<(OverlayKind, PathBuf)> = Vec::new();
     for kind in kinds {
         if !paths.iter().any(|(k, _)| k == kind) {
-            paths.push((
-                *kind,
-                out.with_file_name(format!("{stem}-{}.png", kind.name())),
-            ));
+            paths.push((*kind, out.with_file_name(name(kind))));
         }
     }
     paths

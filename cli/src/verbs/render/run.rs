@@ -6,7 +6,7 @@ use gnomon_pipeline::techniques::Registry;
 
 use super::args::RenderArgs;
 use super::frames;
-use super::job::Job;
+use super::job::RenderJob;
 use super::write::write;
 use crate::error::CliError;
 use crate::output::json::{FileDocument, worker_threads};
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     }
     let progress = Progress::new(3 + args.overlay.len() as u64);
     progress.doing("loading the scene");
-    let job = Job::new(args, registry)?;
+    let job = RenderJob::new(args, registry)?;
     progress.step();
     progress.doing("rendering");
     let done = render(&job.scene, job.technique, &job.params, &job.settings)?;
@@ -31,10 +31,10 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     if args.json {
         output::print_json(&job.document(&done, files.clone()))?;
     }
-    output::print_summary(&summary(&job, &done, &files), args.json)
+    output::print_summary(&summarise(&job, &done, &files), args.json)
 }
 
-fn summary(job: &Job, done: &Rendered, files: &[FileDocument]) -> String {
+fn summarise(job: &RenderJob, done: &Rendered, files: &[FileDocument]) -> String {
     let settings = &job.settings;
     let mut text = format!(
         "{}, {}, {}x{}: {} on {} threads, {}, skipping {}\n\n",

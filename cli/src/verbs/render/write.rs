@@ -5,7 +5,7 @@ use std::path::Path;
 use gnomon_pipeline::measure::render::Rendered;
 
 use super::args::RenderArgs;
-use super::job::Job;
+use super::job::RenderJob;
 use crate::error::CliError;
 use crate::output::files::Batch;
 use crate::output::json::FileDocument;
@@ -15,7 +15,7 @@ use crate::overlay;
 
 /// Draws and writes everything that was asked for, or nothing.
 pub(super) fn write(
-    job: &Job,
+    job: &RenderJob,
     args: &RenderArgs,
     done: &Rendered,
     progress: &Progress,

@@ -45,7 +45,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<(), CliError> {
     let outcomes = if args.list {
         chosen.into_iter().map(Outcome::listed).collect()
     } else {
-        measured(args, settings, chosen)?
+        measure_claims(args, settings, chosen)?
     };
     if args.json {
         let document = ReproduceDocument::new(&settings, &outcomes);
@@ -53,12 +53,12 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<(), CliError> {
     }
     let mut text: String = outcomes.iter().map(|o| text::of(o, args.list)).collect();
     if !args.list {
-        text += &text::summary(&outcomes, &settings, start.elapsed());
+        text += &text::summarise(&outcomes, &settings, start.elapsed());
     }
     output::print_summary(&text, args.json)
 }
 
-fn measured(
+fn measure_claims(
     args: &ReproduceArgs,
     settings: LabSettings,
     chosen: Vec<&'static Claim>,

@@ -133,7 +133,7 @@ fn trimmed(text: String) -> String {
 }
 
 /// How many claims hold, and which do not.
-pub(super) fn summary(outcomes: &[Outcome], settings: &LabSettings, time: Duration) -> String {
+pub(super) fn summarise(outcomes: &[Outcome], settings: &LabSettings, time: Duration) -> String {
     let judged = |j: Judgement| -> Vec<&str> {
         let has = |o: &&Outcome| o.finding.as_ref().is_some_and(|f| f.judgement() == j);
         outcomes.iter().filter(has).map(|o| o.claim.id).collect()

@@ -7,7 +7,8 @@
 //! their depth, and by an edge within 1/128 pixel; they are counted, and left out
 //! of the errors of visibility.
 
-use super::sight::Sight;
+use super::pixels::LeftOut;
+use super::sight::{Match, Sight};
 use crate::truth::metrics::MetricError;
 use crate::truth::oracle::area::VisibilityImage;
 
@@ -16,9 +17,8 @@ use crate::truth::oracle::area::VisibilityImage;
 pub struct Aligned {
     /// NaN where no surface is seen, or where the picture shows another one.
     pub truth: VisibilityImage,
-    /// Pixels where the picture shows another surface than the truth, or may do
-    /// so, an outline or sharp edge being too near.
-    pub other_surface: usize,
+    /// Pixels without truth, by reason.
+    pub left_out: LeftOut,
     /// What shading should have used: the truth, and where the picture shows
     /// another surface that of the neighbour nearest in depth. 1 where the
     /// picture shows none.
@@ -40,21 +40,25 @@ impl Aligned {
                 found,
             });
         }
-        let agrees: Vec<bool> = (0..expected).map(|i| sight.agrees(i, depth[i])).collect();
-        let values = image.values.iter().zip(&agrees);
+        let matches = (0..expected).map(|i| sight.match_depth(i, depth[i]));
+        let matches: Vec<Match> = matches.collect();
+        let values = image.values.iter().zip(&matches);
         let truth = VisibilityImage {
             size,
             values: values
-                .map(|(v, same)| if *same { *v } else { f64::NAN })
+                .map(|(v, found)| if found.agrees() { *v } else { f64::NAN })
                 .collect(),
         };
+        let mut left_out = LeftOut::of(matches.iter().copied());
+        let nameless = |(found, v): &(&Match, &f64)| **found == Match::Surface && v.is_nan();
+        left_out.no_value = matches.iter().zip(&truth.values).filter(nameless).count();
         let shade = |i: usize| match depth[i] {
             1.0.. => 1.0,
-            _ if agrees[i] => truth.values[i] as f32,
+            _ if matches[i].agrees() => truth.values[i] as f32,
             _ => borrowed(&truth, depth, i),
         };
         Ok(Self {
-            other_surface: agrees.iter().filter(|same| !**same).count(),
+            left_out,
             for_shading: (0..expected).map(shade).collect(),
             truth,
         })
@@ -115,16 +119,36 @@ mod tests {
             let found = truth.under(&depth(name, SIZE)).unwrap();
             // The landscape has a facet for every pixel or two.
             let most = if name == "peer-c" { 1000 } else { 100 };
-            assert!(
-                found.other_surface <= most,
-                "{name}: {}",
-                found.other_surface
-            );
+            let other = found.left_out.other_surface();
+            assert!(other <= most, "{name}: {other}");
             let mut moved = depth(name, SIZE);
             moved.rotate_right(SIZE[0] as usize); // a row down
-            let wrong = truth.under(&moved).unwrap().other_surface;
+            let wrong = truth.under(&moved).unwrap().left_out.other_surface();
             assert!(wrong > 2 * most, "{name}: {wrong}");
         }
+    }
+
+    /// Of each pixel one reason.
+    #[test]
+    fn what_is_left_out_is_counted_by_reason() {
+        const SIZE: [u32; 2] = [60, 45];
+        let scene = builtin::build("cylinder").unwrap();
+        let truth = Reference::new(&scene, 0, SIZE, ReferenceKind::Exact, None, &|| {}).unwrap();
+        let depth = depth("cylinder", SIZE);
+        let left_out = |depth: &[f32]| truth.under(depth).unwrap().left_out;
+        let found = left_out(&depth);
+        let surfaces = depth.iter().filter(|d| **d < 1.0).count();
+        assert!(found.background > 100 && found.other_depth + found.missing_surface < 5);
+        let bare = left_out(&vec![1.0; depth.len()]);
+        assert!(
+            bare.missing_surface + found.outline >= surfaces - 5,
+            "{bare:?}"
+        );
+        assert_eq!((bare.background, bare.other_depth), (found.background, 0));
+        let full = left_out(&vec![0.5; depth.len()]);
+        assert_eq!((full.extra_surface, full.background), (found.background, 0));
+        assert_eq!(full.other_depth, bare.missing_surface);
+        assert_eq!(full.total(), depth.len());
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! figures 10 and 11).
 
 use super::CompareError;
-use super::sight::Sight;
+use super::pixels::{LeftOut, PixelCounts};
+use super::sight::{Match, Sight};
 use crate::measure::render::{Rendered, SrgbEncoder};
 use crate::truth::metrics::flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
 use crate::truth::metrics::psnr::psnr;
@@ -91,11 +92,25 @@ impl EnvironmentReference {
             let (reference, test) = (self.size, done.size);
             return Err(MetricError::SizesDiffer { reference, test }.into());
         }
-        let pair = |i: usize| {
-            let truth = self.radiance[i].filter(|_| self.sight.agrees(i, done.depth[i]))?;
+        let pair = |(i, found): (usize, Match)| {
+            let truth = self.radiance[i].filter(|_| found == Match::Surface)?;
             Some((done.color[i].map(f64::from), truth))
         };
-        Ok((0..self.radiance.len()).map(pair).collect())
+        Ok(self.matches(done).enumerate().map(pair).collect())
+    }
+
+    /// Of a picture of the same size.
+    fn matches<'a>(&'a self, done: &'a Rendered) -> impl Iterator<Item = Match> + 'a {
+        let depth = done.depth.iter().enumerate();
+        depth.map(|(i, depth)| self.sight.match_depth(i, *depth))
+    }
+
+    /// Of which `compared` were compared.
+    fn count_pixels(&self, done: &Rendered, compared: usize) -> PixelCounts {
+        let mut left_out = LeftOut::of(self.matches(done));
+        let surfaces = self.matches(done).filter(|m| *m == Match::Surface);
+        left_out.no_value = surfaces.count() - compared;
+        PixelCounts { compared, left_out }
     }
 }
 
@@ -105,10 +120,8 @@ type Pair = ([f64; 3], [f64; 3]);
 /// 1 is display white; nothing is limited to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadianceScore {
-    /// Pixels that were compared.
-    pub pixels: usize,
-    /// Pixels with a surface, or without, that were left out at outlines.
-    pub other_surface: usize,
+    /// How many pixels linear errors are of, and why others were left out.
+    pub pixels: PixelCounts,
     /// Root of the mean squared error over pixels and channels.
     pub rmse: f64,
     /// The same as a share of the reference's mean.
@@ -163,8 +176,7 @@ impl RadianceScore {
         let size = reference.size;
         let (truth, test) = (Picture::new(size, &truth)?, Picture::new(size, &test)?);
         Ok(Self {
-            pixels: largest.len(),
-            other_surface: pairs.len() - largest.len() - reference.bare(done),
+            pixels: reference.count_pixels(done, largest.len()),
             rmse,
             relative_rmse: if truth_sum > 0.0 {
                 rmse / (truth_sum / values)
@@ -187,13 +199,5 @@ impl RadianceScore {
             },
             flip: flip(truth, test, DEFAULT_PIXELS_PER_DEGREE)?.mean,
         })
-    }
-}
-
-impl EnvironmentReference {
-    /// Pixels at which both show no surface.
-    fn bare(&self, done: &Rendered) -> usize {
-        let none = |(truth, depth): &(&Option<[f64; 3]>, &f32)| truth.is_none() && **depth >= 1.0;
-        self.radiance.iter().zip(&done.depth).filter(none).count()
     }
 }

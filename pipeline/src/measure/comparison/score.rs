@@ -1,6 +1,7 @@
 //! All measures of one technique's picture.
 
 use super::Aligned;
+use super::pixels::{LeftOut, PixelCounts};
 use crate::measure::render::Rendered;
 use crate::truth::metrics::banding::Banding;
 use crate::truth::metrics::flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
@@ -26,8 +27,8 @@ pub struct Score {
     pub ssim: Option<f64>,
     /// Mean LDR-FLIP at [`DEFAULT_PIXELS_PER_DEGREE`].
     pub flip: f64,
-    /// Pixels left out, see [`Aligned::other_surface`].
-    pub other_surface: usize,
+    /// How many pixels errors of visibility are of, and why others were left out.
+    pub pixels: PixelCounts,
 }
 
 impl Score {
@@ -50,8 +51,10 @@ impl Score {
             .collect();
         let [reference, test] = [rgb_of(shaded), rgb_of(&done.srgb)];
         let (reference, test) = (Picture::new(size, &reference)?, Picture::new(size, &test)?);
+        let visibility = VisibilityError::measure(truth, size, &seen)?;
         Ok(Self {
-            visibility: VisibilityError::measure(truth, size, &seen)?,
+            pixels: count_pixels(under, &visibility),
+            visibility,
             banding: Banding::measure(truth, size, &seen, BANDING_EDGE)?,
             psnr: psnr(reference, test)?,
             ssim: match ssim(reference, test) {
@@ -60,7 +63,19 @@ impl Score {
                 Err(other) => return Err(other),
             },
             flip: flip(reference, test, DEFAULT_PIXELS_PER_DEGREE)?.mean,
-            other_surface: under.other_surface,
         })
+    }
+}
+
+/// What the truth has a number for and the picture does not is without value.
+fn count_pixels(under: &Aligned, visibility: &VisibilityError) -> PixelCounts {
+    let compared = visibility.all.map_or(0, |e| e.pixels);
+    let known = under.truth.values.iter().filter(|v| !v.is_nan()).count();
+    PixelCounts {
+        compared,
+        left_out: LeftOut {
+            no_value: under.left_out.no_value + known - compared,
+            ..under.left_out
+        },
     }
 }

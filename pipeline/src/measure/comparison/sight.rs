@@ -28,6 +28,30 @@ pub(super) struct Seen {
     receives: bool,
 }
 
+/// How a pixel of a depth buffer compares with what is seen there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Match {
+    /// Both show the same surface.
+    Surface,
+    /// Both show none.
+    Background,
+    /// An outline or sharp edge is within [`REACH`].
+    Outline,
+    /// Surfaces at different depths.
+    OtherDepth,
+    /// A surface is seen, the buffer shows none.
+    MissingSurface,
+    /// The buffer shows a surface, none is seen.
+    ExtraSurface,
+}
+
+impl Match {
+    /// Whether both show the same.
+    pub(super) fn agrees(self) -> bool {
+        matches!(self, Self::Surface | Self::Background)
+    }
+}
+
 /// A facet under an image point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Facet {
@@ -84,14 +108,19 @@ impl Sight {
         }
     }
 
-    /// Whether `depth` of a depth buffer shows the surface seen at `pixel`, and
-    /// no sharp edge or outline is so near that this might be chance.
-    pub(super) fn agrees(&self, pixel: usize, depth: f32) -> bool {
-        let shown = match self.seen[pixel] {
-            Some(seen) => (f64::from(depth) - seen.depth).abs() <= seen.tolerance,
-            None => depth >= 1.0,
-        };
-        shown && !self.near_edge[pixel]
+    /// Whether `depth` of a depth buffer shows what is seen at `pixel`, no sharp edge
+    /// or outline being so near that this might be chance.
+    pub(super) fn match_depth(&self, pixel: usize, depth: f32) -> Match {
+        if self.near_edge[pixel] {
+            return Match::Outline;
+        }
+        match self.seen[pixel] {
+            None if depth >= 1.0 => Match::Background,
+            None => Match::ExtraSurface,
+            Some(_) if depth >= 1.0 => Match::MissingSurface,
+            Some(seen) if (f64::from(depth) - seen.depth).abs() <= seen.tolerance => Match::Surface,
+            Some(_) => Match::OtherDepth,
+        }
     }
 }
 

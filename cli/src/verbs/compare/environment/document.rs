@@ -3,9 +3,10 @@
 
 use serde::Serialize;
 
-use super::{Job, Measured, residual_share};
-use crate::output::json::{FileDocument, Object, WarningDocument, worker_threads};
+use super::{EnvironmentJob, MeasuredLight, residual_share};
+use crate::output::json::{FileDocument, Hashes, Object, WarningDocument, worker_threads};
 use crate::output::tables;
+use crate::verbs::compare::pixels::count_by_reason;
 
 #[derive(Serialize)]
 pub(super) struct EnvironmentDocument<'a> {
@@ -20,12 +21,12 @@ pub(super) struct EnvironmentDocument<'a> {
     simd: &'static str,
     skip: bool,
     repeat: u32,
-    results: Vec<ResultDocument>,
+    results: Vec<EnvironmentResult>,
     files: &'a [FileDocument],
 }
 
 #[derive(Serialize)]
-struct ResultDocument {
+struct EnvironmentResult {
     technique: &'static str,
     params: Object<String>,
     lights: usize,
@@ -47,27 +48,22 @@ struct ResultDocument {
     time_ms: f64,
     bytes: u64,
     shaded_fragments: u64,
-    pixels: PixelDocument,
-    hash: HashDocument,
+    pixels: EnvironmentPixels,
+    hash: Hashes,
     warnings: Vec<WarningDocument>,
 }
 
 #[derive(Serialize)]
-struct PixelDocument {
+struct EnvironmentPixels {
     compared: usize,
     other_surface: usize,
-}
-
-#[derive(Serialize)]
-struct HashDocument {
-    color: String,
-    visibility: String,
+    left_out: Object<usize>,
 }
 
 pub(super) fn of<'a>(
-    job: &'a Job,
+    job: &'a EnvironmentJob,
     reference_ms: f64,
-    measured: &[Measured<'_>],
+    measured: &[MeasuredLight<'_>],
     files: &'a [FileDocument],
 ) -> EnvironmentDocument<'a> {
     let settings = &job.settings;
@@ -88,11 +84,11 @@ pub(super) fn of<'a>(
     }
 }
 
-fn result(m: &Measured<'_>) -> ResultDocument {
+fn result(m: &MeasuredLight<'_>) -> EnvironmentResult {
     let (score, done) = (&m.score, &m.done);
     let params = m.entry.params.iter();
     let finite = |v: f64| Some(v).filter(|v| v.is_finite());
-    ResultDocument {
+    EnvironmentResult {
         technique: m.entry.technique.name(),
         params: Object(params.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()),
         lights: m.placed.fit.lights.len(),
@@ -111,14 +107,12 @@ fn result(m: &Measured<'_>) -> ResultDocument {
         time_ms: done.frame_ms,
         bytes: tables::frame_bytes(&done.report),
         shaded_fragments: tables::frame_counters(&done.report).fragment_shader_invocations,
-        pixels: PixelDocument {
-            compared: score.pixels,
-            other_surface: score.other_surface,
+        pixels: EnvironmentPixels {
+            compared: score.pixels.compared,
+            other_surface: score.pixels.left_out.other_surface(),
+            left_out: count_by_reason(&score.pixels),
         },
-        hash: HashDocument {
-            color: done.color_hash(),
-            visibility: done.visibility_hash(),
-        },
+        hash: Hashes::of(done),
         warnings: done.warnings.iter().map(WarningDocument::new).collect(),
     }
 }

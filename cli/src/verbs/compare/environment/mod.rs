@@ -17,6 +17,7 @@ use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
 
 use super::args::CompareArgs;
 use super::job::{self, DEFAULT_SIZE, Entry};
+use super::pixels;
 use crate::error::CliError;
 use crate::output::files::{self, Batch};
 use crate::output::json::{FileDocument, worker_threads};
@@ -30,7 +31,7 @@ use crate::verbs;
 const LIGHTS: [usize; 3] = [30, 45, 60];
 
 /// What was asked for, checked, and the scene under each number of lights.
-struct Job {
+struct EnvironmentJob {
     name: String,
     map: String,
     scenes: Vec<Scene>,
@@ -41,7 +42,7 @@ struct Job {
 }
 
 /// A technique's picture of one scene.
-struct Measured<'a> {
+struct MeasuredLight<'a> {
     label: String,
     entry: &'a Entry,
     placed: &'a PlacedEnvironment,
@@ -52,7 +53,7 @@ struct Measured<'a> {
 
 /// Renders, measures, draws and prints.
 pub(super) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliError> {
-    let job = Job::new(args, registry)?;
+    let job = EnvironmentJob::new(args, registry)?;
     let runs = job.scenes.len() * job.entries.len();
     let progress = Progress::new(u64::from(job.settings.size[1]) + runs as u64 + 1);
     progress.doing("tracing the reference");
@@ -80,12 +81,12 @@ pub(super) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     if args.json {
         output::print_json(&document::of(&job, reference_ms, &measured, &files))?;
     }
-    output::print_summary(&summary(&job, reference_ms, &measured, &files), args.json)
+    output::print_summary(&summarise(&job, reference_ms, &measured, &files), args.json)
 }
 
-impl Job {
+impl EnvironmentJob {
     fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
-        let entries = job::entries(args, registry, None)?;
+        let entries = job::parse_entries(args, registry, None)?;
         let lights = if args.lights.is_empty() {
             &LIGHTS[..]
         } else {
@@ -133,17 +134,20 @@ impl Job {
         scene: &'a Scene,
         entry: &'a Entry,
         references: &References,
-    ) -> Result<Measured<'a>, CliError> {
+    ) -> Result<MeasuredLight<'a>, CliError> {
         let placed = scene.environment.as_deref();
         let placed = placed.ok_or_else(|| CliError::Check("no environment".to_owned()))?;
-        let done = render(scene, entry.technique, &entry.params, &self.settings)?;
+        let mut done = render(scene, entry.technique, &entry.params, &self.settings)?;
         let reference = references.of(entry);
-        Ok(Measured {
+        let difference = reference.difference(&done)?;
+        let score = RadianceScore::measure(reference, &done)?;
+        done.warnings.extend(score.pixels.warning());
+        Ok(MeasuredLight {
             label: format!("{} lights={}", entry.label, scene.lights.len()),
             entry,
             placed,
-            difference: reference.difference(&done)?,
-            score: RadianceScore::measure(reference, &done)?,
+            difference,
+            score,
             done,
         })
     }
@@ -153,8 +157,8 @@ impl Job {
 struct References([Option<EnvironmentReference>; 2]);
 
 impl References {
-    fn new(job: &Job, progress: &Progress) -> Self {
-        let wanted = [false, true].map(|h| job.entries.iter().any(|e| highlights(e) == h));
+    fn new(job: &EnvironmentJob, progress: &Progress) -> Self {
+        let wanted = [false, true].map(|h| job.entries.iter().any(|e| has_highlights(e) == h));
         let of = |highlights: bool| {
             let scene = job.scenes.first()?;
             let map = &scene.environment.as_ref()?.map.cube;
@@ -174,7 +178,7 @@ impl References {
     }
 
     fn of(&self, entry: &Entry) -> &EnvironmentReference {
-        let wanted = &self.0[usize::from(highlights(entry))];
+        let wanted = &self.0[usize::from(has_highlights(entry))];
         wanted.as_ref().expect("made for every entry")
     }
 
@@ -186,7 +190,7 @@ impl References {
     }
 }
 
-fn highlights(entry: &Entry) -> bool {
+fn has_highlights(entry: &Entry) -> bool {
     entry.params.text("shading") != Some("lambert")
 }
 
@@ -196,7 +200,7 @@ fn residual_share(placed: &PlacedEnvironment) -> f64 {
     luminance(placed.fit.residual_energy()) as f64 / total
 }
 
-type Figure = (&'static str, fn(&Measured<'_>) -> String);
+type Figure = (&'static str, fn(&MeasuredLight<'_>) -> String);
 
 const FIGURES: &[Figure] = &[
     ("area lights", |m| m.placed.fit.lights.len().to_string()),
@@ -225,7 +229,12 @@ const FIGURES: &[Figure] = &[
 /// Columns of a table: 80 characters in all.
 const COLUMNS: usize = 4;
 
-fn summary(job: &Job, ms: f64, measured: &[Measured<'_>], files: &[FileDocument]) -> String {
+fn summarise(
+    job: &EnvironmentJob,
+    ms: f64,
+    measured: &[MeasuredLight<'_>],
+    files: &[FileDocument],
+) -> String {
     let settings = &job.settings;
     let mut text = format!(
         "{}, environment {}, {}x{}: {} threads, {}, skipping {}\n\
@@ -251,6 +260,8 @@ fn summary(job: &Job, ms: f64, measured: &[Measured<'_>], files: &[FileDocument]
                 .rows
                 .push(std::iter::once((*name).to_owned()).chain(cells).collect());
         }
+        let counts: Vec<_> = part.iter().map(|m| m.score.pixels).collect();
+        table.rows.extend(pixels::tabulate(&counts));
         text += &format!("\n{}", table.to_text());
     }
     for m in measured {

@@ -3,7 +3,7 @@
 
 use gnomon_pipeline::measure::comparison::EnvironmentReference;
 
-use super::Measured;
+use super::MeasuredLight;
 use crate::draw::diverging::{self, diverging, place};
 use crate::draw::{Canvas, Cell, Grid, Legend, Picture, Swatch};
 use crate::output::numbers::{self, error};
@@ -12,7 +12,7 @@ use crate::overlay;
 /// Where nothing was compared.
 const LEFT_OUT: [u8; 3] = [58, 60, 66];
 
-pub(super) fn draw(reference: &EnvironmentReference, measured: &[Measured<'_>]) -> Picture {
+pub(super) fn draw(reference: &EnvironmentReference, measured: &[MeasuredLight<'_>]) -> Picture {
     let truth = Cell {
         name: format!("reference ({} directions)", reference.directions),
         notes: Vec::new(),
@@ -36,7 +36,7 @@ pub(super) fn draw(reference: &EnvironmentReference, measured: &[Measured<'_>]) 
     legend.below(grid.draw(), diverging)
 }
 
-fn cell(m: &Measured<'_>) -> Cell {
+fn cell(m: &MeasuredLight<'_>) -> Cell {
     let colour = |v: &f64| {
         let [r, g, b] = if v.is_nan() {
             LEFT_OUT

@@ -175,8 +175,8 @@ mod tests {
         for name in [&b"dataWindow\0"[..], b"displayWindow\0"] {
             // The last column, then the last row.
             for (at, value) in [
-                (8, 0x3fff_ffff_u32),
-                (12, 0x3fff_ffff),
+                (8, 0x0fff_ffff_u32),
+                (12, 0x0fff_ffff),
                 (8, 500_000),
                 (12, 2_000_000),
             ] {

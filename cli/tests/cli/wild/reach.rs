@@ -1,7 +1,7 @@
 //! Files that are no files, or not the scene's.
 
-use super::common::Folder;
 use super::{codes, folder_of, hashes, render};
+use crate::common::Folder;
 
 fn message(document: &serde_json::Value) -> &str {
     document["warnings"][0]["message"].as_str().unwrap()

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::common::Folder;
 use super::{codes, folder_of, render};
+use crate::common::Folder;
 
 /// Unit cubes at these places, corners shared.
 fn cubes(places: &[[i32; 3]]) -> String {

@@ -1,8 +1,6 @@
 //! What `render` prints and writes.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 use serde_json::Value;
 
 const KEYS: [&str; 11] = [

@@ -1,8 +1,6 @@
 //! Environment lighting and animations on the command line.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 use serde_json::Value;
 
 const SKY: &str = "--env sky --env-side 48";

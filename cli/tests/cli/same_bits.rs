@@ -1,8 +1,6 @@
 //! The same bits and counters for every way to execute.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 use serde_json::Value;
 
 fn render(folder: &Folder, flags: &str) -> Value {

@@ -1,8 +1,6 @@
 //! Bad input: exit code 2, a message that says what and what instead, no file.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 
 /// Runs with arguments that must be refused and leave the folder as it was.
 fn refused(folder: &Folder, arguments: &str, parts: &[&str]) {

@@ -1,9 +1,7 @@
 //! `techniques --json` is enough to make a sweep: every value that it promises parses,
 //! and none beyond.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 use gnomon_pipeline::technique::{Params, SETTING_WITHOUT_EFFECT};
 use gnomon_pipeline::techniques::find;
 use serde_json::Value;

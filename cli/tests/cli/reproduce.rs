@@ -1,8 +1,6 @@
 //! What `reproduce` prints, writes and refuses.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 use serde_json::Value;
 
 const SMALL: &str = "--size 96x72 --repeat 1";

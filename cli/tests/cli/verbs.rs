@@ -1,8 +1,6 @@
 //! `demo` and the listings.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 
 #[test]
 fn scenes_are_listed() {

@@ -1,8 +1,6 @@
 //! What `compare` prints, writes and refuses.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 use serde_json::Value;
 
 const RESULT_KEYS: [&str; 12] = [
@@ -79,6 +77,74 @@ fn json_has_the_documented_keys() {
         "{rmse:?}"
     );
     assert!(results[2]["bytes"].as_u64() > results[1]["bytes"].as_u64());
+}
+
+/// Every pixel is compared, or left out for one reason.
+fn assert_pixels_add_up(result: &Value, size: [u64; 2]) {
+    let pixels = &result["pixels"];
+    let left_out = pixels["left_out"].as_object().unwrap();
+    let count = |value: &Value| value.as_u64().unwrap();
+    let sum: u64 = left_out.values().map(count).sum();
+    assert_eq!(
+        count(&pixels["compared"]) + sum,
+        size[0] * size[1],
+        "{pixels}"
+    );
+    let other = ["outline", "other_depth", "missing_surface", "extra_surface"];
+    let other: u64 = other.iter().map(|key| count(&left_out[*key])).sum();
+    assert_eq!(count(&pixels["other_surface"]), other, "{pixels}");
+}
+
+#[test]
+fn pixels_add_up_with_every_reference() {
+    let folder = Folder::new("compare-pixels");
+    for size in [[64, 48], [7, 5], [1, 1]] {
+        let compare = format!("compare cylinder --size {}x{} --json", size[0], size[1]);
+        for rest in [
+            "--techniques unshadowed,shadow-map,soft-shadow-volumes",
+            "--techniques pcf --reference rays",
+            "--techniques mixed-lights --env sky --lights 2,3 --directions 16",
+        ] {
+            let doc = folder.gnomon(&format!("{compare} {rest}")).json();
+            for result in doc["results"].as_array().unwrap() {
+                assert_pixels_add_up(result, size);
+                let told = result["warnings"].to_string().contains("few-pixels");
+                assert!(!told || size == [1, 1], "{result}");
+            }
+        }
+    }
+    let text = folder
+        .gnomon("compare cylinder --size 64x48 --techniques pcf,shadow-map")
+        .fine()
+        .stdout();
+    for row in [
+        "pixels compared",
+        "pixels left out",
+        "  no surface",
+        "  edge too near",
+    ] {
+        assert!(text.contains(row), "no {row} in {text}");
+    }
+}
+
+/// Facets smaller than pixels: edges are near nearly everywhere, and errors of what is
+/// left say little of the picture.
+#[test]
+fn a_comparison_of_few_pixels_is_warned_of() {
+    let folder = Folder::new("compare-few");
+    let compare = "compare fractal --size 8x6 --techniques pcf";
+    let doc = folder.gnomon(&format!("{compare} --json")).json();
+    let result = &doc["results"][0];
+    let warnings = result["warnings"].as_array().unwrap();
+    let few = warnings.iter().find(|w| w["code"] == "few-pixels-compared");
+    let few = few.unwrap_or_else(|| panic!("{warnings:?}"));
+    let pixels = &result["pixels"];
+    assert!(pixels["left_out"]["outline"].as_u64() > pixels["compared"].as_u64());
+    assert_eq!(few["count"], pixels["other_surface"]);
+    assert!(few["message"].as_str().unwrap().contains("edge too near ("));
+    let text = folder.gnomon(compare).fine().stdout();
+    let line = "warning: pcf: few-pixels-compared: ";
+    assert!(text.contains(line), "{text}");
 }
 
 /// The same figure as `render` has, and none where there are no wedges.

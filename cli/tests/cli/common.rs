@@ -1,7 +1,5 @@
 //! Runs the built binary in a folder of its own.
 
-#![allow(dead_code, reason = "each test binary uses a part")]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -83,6 +81,14 @@ impl Run {
             self.stderr()
         );
         self
+    }
+
+    /// Asserts exit code 0, or 2 with `message`.
+    pub(crate) fn fine_or_refused(self, message: &str) {
+        if self.output.status.code() == Some(0) {
+            return;
+        }
+        self.refused(&[message]);
     }
 
     /// Asserts exit code 2, an empty stdout, no panic, and `parts` in the message.

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 const RENDER: &str = "render creature --lights 6 --size 96x72 --json --env";
 
-fn lit_by(folder: &super::common::Folder, map: &str) -> Value {
+fn lit_by(folder: &crate::common::Folder, map: &str) -> Value {
     folder.gnomon(&format!("{RENDER} {map}")).json()
 }
 

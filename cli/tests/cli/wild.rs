@@ -1,23 +1,16 @@
 //! Models, materials, maps and scenes as other programs write them: what users
 //! bring is read as they mean it, or refused with its place.
 
-mod common;
-#[path = "wild/edges.rs"]
 mod edges;
-#[path = "wild/maps.rs"]
 mod maps;
-#[path = "wild/models.rs"]
 mod models;
-#[path = "wild/paint.rs"]
 mod paint;
-#[path = "wild/reach.rs"]
 mod reach;
-#[path = "wild/scenes.rs"]
 mod scenes;
 
 use std::path::{Path, PathBuf};
 
-use common::Folder;
+use crate::common::Folder;
 use serde_json::Value;
 
 /// The files that lie beside these tests.

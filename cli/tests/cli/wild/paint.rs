@@ -1,7 +1,7 @@
 //! Materials of OBJ files.
 
-use super::common::Folder;
 use super::{codes, folder_of, hashes, render};
+use crate::common::Folder;
 
 /// Draws `file` in the colours of `base-red.obj`, with these warnings.
 #[track_caller]

@@ -1,0 +1,15 @@
+//! The program from outside: a module for each verb or promise, in one binary, which
+//! is linked once.
+
+mod attack;
+mod bad_input;
+mod common;
+mod compare;
+mod environment;
+mod overlays;
+mod render;
+mod reproduce;
+mod same_bits;
+mod sweep;
+mod verbs;
+mod wild;

@@ -42,11 +42,11 @@ pub trait Real:
     fn lt(self, o: Self) -> Self::Test;
     /// `self == o`.
     fn eq(self, o: Self) -> Self::Test;
-    /// Whether the sign bit is set.
+    /// Whether the sign bit is set; of a NaN it may be on one machine and not on another.
     fn negative(self) -> Self::Test;
     /// `if test { yes } else { no }`.
     fn pick(test: Self::Test, yes: Self, no: Self) -> Self;
-    /// `self` with its sign flipped where `of` has the sign bit set.
+    /// `self` with its sign flipped where `of` has the sign bit set; `of` is no NaN.
     fn flip_by(self, of: Self) -> Self;
     /// The leading 12 significant bits; the rest cut off.
     fn head(self) -> Self;
@@ -210,7 +210,7 @@ impl<L: Lanes> Real for F32<L> {
 
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn negative(self) -> Mask<L> {
-        self.to_bits().to_i32().lt(I32::splat(self.lanes(), 0))
+        self.raw_bits().to_i32().lt(I32::splat(self.lanes(), 0))
     }
 
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
@@ -221,13 +221,13 @@ impl<L: Lanes> Real for F32<L> {
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn flip_by(self, of: Self) -> Self {
         let sign = I32::splat(self.lanes(), SIGN as i32).to_u32();
-        (self.to_bits() ^ (of.to_bits() & sign)).to_f32_bits()
+        (self.raw_bits() ^ (of.raw_bits() & sign)).to_f32_bits()
     }
 
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn head(self) -> Self {
         let mask = I32::splat(self.lanes(), HEAD as i32).to_u32();
-        (self.to_bits() & mask).to_f32_bits()
+        (self.raw_bits() & mask).to_f32_bits()
     }
 
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
@@ -238,7 +238,7 @@ impl<L: Lanes> Real for F32<L> {
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn split(self) -> (Self, Self) {
         let l = self.lanes();
-        let i = self.to_bits().to_i32() + I32::splat(l, ONE - SQRT_HALF);
+        let i = self.raw_bits().to_i32() + I32::splat(l, ONE - SQRT_HALF);
         let m = (i & I32::splat(l, MANTISSA)) + I32::splat(l, SQRT_HALF);
         (
             m.to_u32().to_f32_bits(),

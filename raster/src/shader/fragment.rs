@@ -61,6 +61,8 @@ pub(crate) struct PacketOutput {
     pub(crate) depth: [f32; LANES],
     /// Lanes that were discarded.
     pub(crate) discarded: u16,
+    /// Lanes whose colour is the bits of an integer, by attachment.
+    pub(crate) integers: [u16; MAX_COLOR_ATTACHMENTS],
 }
 
 impl PacketOutput {
@@ -68,6 +70,7 @@ impl PacketOutput {
         color: [[[0.0; LANES]; 4]; MAX_COLOR_ATTACHMENTS],
         depth: [0.0; LANES],
         discarded: 0,
+        integers: [0; MAX_COLOR_ATTACHMENTS],
     };
 }
 
@@ -261,14 +264,20 @@ impl<'a, L: Lanes> Fragment<'a, L> {
             for (slot, v) in c.iter_mut().zip(rgba) {
                 v.store(slot);
             }
+            self.out.integers[i] = 0;
         }
     }
 
-    /// Sets the value of an `R32Uint` colour attachment.
+    /// Sets the value of an `R32Uint` colour attachment, to the bit.
+    /// ([`Fragment::set_color`] gives such an attachment the bits of the first channel,
+    /// of a NaN the canonical ones.)
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn set_color_uint(&mut self, i: usize, v: U32<L>) {
         let bits = v.to_f32_bits();
         self.set_color(i, [bits; 4]);
+        if let Some(lanes) = self.out.integers.get_mut(i) {
+            *lanes = u16::MAX;
+        }
     }
 
     /// Sets the depth; only where the shader declared it. It is 0 otherwise.

@@ -220,9 +220,17 @@ impl<L: Lanes> F32<L> {
         )
     }
 
-    /// The bits of each float.
+    /// The bits of each float; of every NaN those of the canonical one, since the sign
+    /// and payload of a NaN that arithmetic makes differ from machine to machine.
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_bits(self) -> U32<L> {
+        self.canonical_nan().raw_bits()
+    }
+
+    /// The bits of each float as they are: for values that are no NaN, or whose bits
+    /// nobody gets to see.
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
+    pub(crate) fn raw_bits(self) -> U32<L> {
         U32::new(self.l, self.v.bitcast())
     }
 
@@ -294,9 +302,9 @@ impl<L: Lanes> F32<L> {
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn all_in_unit(v: &[Self; 4]) -> Mask<L> {
         let largest = v[0]
-            .to_bits()
-            .max(v[1].to_bits())
-            .max(v[2].to_bits().max(v[3].to_bits()));
+            .raw_bits()
+            .max(v[1].raw_bits())
+            .max(v[2].raw_bits().max(v[3].raw_bits()));
         largest.le(U32::splat(v[0].l, 1.0f32.to_bits()))
     }
 }

@@ -52,6 +52,38 @@ fn unknown_names_get_suggestions() {
 }
 
 #[test]
+fn the_environments_threads_are_limited() {
+    let folder = Folder::new("environment-threads");
+    for threads in ["100000", "1025", "-3", "all"] {
+        folder
+            .gnomon_with(
+                "render demo --size 64x48",
+                &[("RAYON_NUM_THREADS", threads)],
+            )
+            .refused(&["RAYON_NUM_THREADS", threads, "1024"]);
+    }
+    assert!(folder.names().is_empty());
+    let run = folder.gnomon_with(
+        "render demo --size 64x48 --json",
+        &[("RAYON_NUM_THREADS", "3")],
+    );
+    assert_eq!(run.fine().json()["threads"], 3);
+}
+
+/// Each limit is met in another stage: textures, attachments, reading back, drawing.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_that_is_short_is_an_error() {
+    let folder = Folder::new("memory");
+    for kib in [300_000, 700_000, 1_500_000] {
+        folder
+            .gnomon_within("render demo --size 8192x8192 --threads 2", kib)
+            .refused(&["bytes, which the system does not give", "8192"]);
+    }
+    assert!(folder.names().is_empty());
+}
+
+#[test]
 fn sizes_and_execution_settings_are_checked() {
     let folder = Folder::new("settings");
     for size in [

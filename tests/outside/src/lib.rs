@@ -23,6 +23,8 @@ pub fn on_stack(stack: usize, frame: Frame, simd: SimdLevel, threads: usize) -> 
     let config = GpuConfig {
         threads,
         simd,
+        // A small frame has work for several threads.
+        tile: 16,
         ..GpuConfig::default()
     };
     std::thread::Builder::new()

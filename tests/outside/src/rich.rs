@@ -1,4 +1,4 @@
-//! A frame that reaches every kernel: passes of one draw or a few over 16×16 pixels.
+//! A frame that reaches every kernel: passes of one draw or a few over 24×24 pixels, four tiles.
 
 use std::sync::Arc;
 
@@ -9,15 +9,15 @@ use gnomon_raster::state::{
     StencilState,
 };
 use gnomon_raster::{
-    AccessObserver, AddressMode, BlockAccess, ColorAttachment, CommandList, Counters,
+    AccessBatch, AccessObserver, AddressMode, BlockAccess, ColorAttachment, CommandList, Counters,
     DepthStencilAttachment, Draw, Format, Gpu, GpuConfig, LoadOp, RenderPass, RenderPipeline,
     Sampler, StoreOp, Subresource, TextureBinding, TextureDescriptor, TextureDimension, TextureId,
-    VertexBuffer,
+    VertexBuffer, Wants,
 };
 
 use crate::shaders::{Corners, Lit, LookUps};
 
-const SIDE: u32 = 16;
+const SIDE: u32 = 24;
 const COLORS: [Format; 8] = [
     Format::R8Unorm,
     Format::Rg8Unorm,
@@ -65,7 +65,12 @@ pub fn rich(config: GpuConfig) -> u64 {
 /// Submits `list` twice, once observed; gives a hash of counters and accesses.
 fn run(gpu: &mut Gpu, list: &CommandList) -> u64 {
     let mut seen = Accesses(Vec::new());
-    let observed = gpu.submit_observed(list, &mut seen).expect("valid");
+    let wants = Wants {
+        depth_ranges: true,
+        ..Wants::default()
+    };
+    let observed = gpu.submit_observed(list, wants, &mut seen);
+    let observed = observed.expect("valid");
     let plain = gpu.submit(list).expect("valid");
     let counters = |r: &gnomon_raster::SubmitReport| -> Vec<Counters> {
         r.passes.iter().map(|p| p.totals()).collect()
@@ -76,8 +81,8 @@ fn run(gpu: &mut Gpu, list: &CommandList) -> u64 {
 struct Accesses(Vec<BlockAccess>);
 
 impl AccessObserver for Accesses {
-    fn render_pass(&mut self, _: usize, _: &str, accesses: &[BlockAccess]) {
-        self.0.extend_from_slice(accesses);
+    fn batch(&mut self, _: usize, batch: &AccessBatch<'_>) {
+        self.0.extend_from_slice(batch.blocks);
     }
 }
 

@@ -37,8 +37,8 @@ impl FragmentShader for Lane {
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         let v = F32::splat(l, self.1);
         match self.0 {
-            Store::Color => f.set_color(0, [v - v; 4]),
-            Store::Bits => f.set_color_uint(0, (v - v).to_bits()),
+            Store::Color => f.set_color(0, [v + -v; 4]),
+            Store::Bits => f.set_color_uint(0, (v + -v).to_bits()),
             Store::Uniform => f.set_color(0, [v; 4]),
             Store::Integer => f.set_color_uint(0, U32::splat(l, self.1.to_bits())),
         }
@@ -61,7 +61,7 @@ impl FragmentShader for Constant {
 
 fn closure(store: Store, v: f32) -> FragmentStage {
     per_fragment(FragmentOutputs::default(), move |_| match store {
-        Store::Color | Store::Bits => ScalarFragmentOutput::color([v - v; 4]),
+        Store::Color | Store::Bits => ScalarFragmentOutput::color([v + -v; 4]),
         Store::Uniform => ScalarFragmentOutput::color([v; 4]),
         Store::Integer => {
             let mut out = ScalarFragmentOutput::default();

@@ -20,7 +20,8 @@ use crate::vector::each2;
 /// Cosine between ray and facet, below which depth is interpolated.
 const EDGE_ON: f32 = 1e-3;
 
-/// Distances along the view's axis that are stored as 0 and 1, world units.
+/// Distances along the view's axis that are stored as 0 and 1, world units. They are
+/// relative to the view's base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
     /// Stored as 0.
@@ -67,11 +68,15 @@ uniforms!(enum Projection { 0: Perspective, 1: Orthographic });
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarDepth {
     /// Rays through texels, each one long along the view's axis. They start at
-    /// `eye`, the light's centre relative to the reference point; orthographic ones
-    /// all go along `first` and start at `eye + x right + y down`.
+    /// `eye`, the light's centre relative to the reference point, if the base is 0,
+    /// else at `eye + (x right + y down) base`; orthographic ones all go along `first`
+    /// and start at `eye + x right + y down`.
     pub rays: PixelRays,
     /// Which of both.
     pub projection: Projection,
+    /// What distances are relative to: how far from a perspective view's centre its
+    /// rays start.
+    pub base: f32,
     /// How depth is stored.
     pub range: DepthRange,
     /// Texels by which a facet's slope pushes it away from the light; 0: not at all.
@@ -82,6 +87,7 @@ pub struct PlanarDepth {
 uniforms!(PlanarDepth {
     rays,
     projection,
+    base,
     range,
     slope,
     slope_limit
@@ -108,7 +114,8 @@ impl FragmentShader for PlanarDepth {
         let start = each3(
             #[inline(always)]
             |i| match perspective {
-                true => F32::splat(l, rays.eye[i]),
+                true if self.base == 0.0 => F32::splat(l, rays.eye[i]),
+                true => across[i] * self.base + rays.eye[i],
                 false => across[i] + rays.eye[i],
             },
         );
@@ -120,13 +127,13 @@ impl FragmentShader for PlanarDepth {
         let slope = dot3(normal, direction);
         let steep = slope.abs().gt(length(direction) * EDGE_ON);
         let (interpolated, widening) = match perspective {
-            true => (f.w(), None),
+            true => (f.w() - self.base, None),
             false => (self.range.distance(f.depth()), Some(F32::splat(l, 1.0))),
         };
         let distance = steep.select_f32((f.varying(6) - moved) / slope, interpolated);
         let distance = match self.slope > 0.0 {
             true => {
-                let step = widening.unwrap_or(distance) / slope.abs();
+                let step = widening.unwrap_or(distance + self.base) / slope.abs();
                 distance + self.pushed(l, normal, step)
             }
             false => distance,
@@ -171,9 +178,11 @@ uniforms!(enum ViewRegion { 0: Front, 1: Face });
 /// From world space to a light view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightMapping {
-    /// Where the picture is taken from, relative to the origin of positions.
+    /// Where the picture is taken from, relative to the origin of positions; with a
+    /// base a point as far along the view.
     pub centre: [f32; 3],
-    /// Unit vectors to the right, downwards and along the view's axis.
+    /// Vectors to the right, downwards and along the view's axis: unit vectors, or
+    /// with a base the first two sheared so that the picture's middle is at 0.
     pub axes: [[f32; 3]; 3],
     /// What places in the picture are.
     pub projection: Projection,
@@ -181,6 +190,9 @@ pub struct LightMapping {
     pub scale: f32,
     /// Added to the product.
     pub offset: [f32; 2],
+    /// What distances are relative to: 0, or for lights so far away that f32 would not
+    /// tell their receivers apart, how far these are at least.
+    pub base: f32,
     /// How depth is stored.
     pub range: DepthRange,
     /// Texels along a side.
@@ -194,6 +206,7 @@ uniforms!(LightMapping {
     projection,
     scale,
     offset,
+    base,
     range,
     size,
     region
@@ -205,7 +218,7 @@ pub struct InLightView<L: Lanes> {
     /// Image coordinates (u, v); inside the picture in 0..1, and anything where
     /// `belongs` is not set.
     pub uv: [F32<L>; 2],
-    /// Distance along the view's axis, world units.
+    /// Distance along the view's axis beyond the base, world units.
     pub distance: F32<L>,
     /// Whether the position is in the view's region.
     pub belongs: Mask<L>,
@@ -226,6 +239,8 @@ impl LightMapping {
                 (from[0] * axis[0] + from[1] * axis[1]) + from[2] * axis[2]
             },
         );
+        let beyond = z;
+        let z = beyond + self.base;
         let in_front = z.gt(F32::splat(l, 0.0));
         let belongs = match self.region {
             ViewRegion::Front => in_front,
@@ -241,14 +256,14 @@ impl LightMapping {
         );
         InLightView {
             uv,
-            distance: z,
+            distance: beyond,
             belongs,
         }
     }
 
     /// Half the width in u (and in v) of what lies between a receiver at distance
     /// `receiver` and a light of the given half width, at distance `blocker`
-    /// (world units): `W(z)/2` of docs/papers.md, Annen et al. 2008.
+    /// (world units beyond the base): `W(z)/2` of docs/papers.md, Annen et al. 2008.
     #[inline(always)]
     #[must_use]
     pub fn half_width<L: Lanes>(
@@ -257,6 +272,7 @@ impl LightMapping {
         blocker: F32<L>,
         receiver: F32<L>,
     ) -> F32<L> {
-        (receiver - blocker) * (light_half * self.scale) / (receiver * blocker)
+        let product = (receiver + self.base) * (blocker + self.base);
+        (receiver - blocker) * (light_half * self.scale) / product
     }
 }

@@ -9,18 +9,36 @@
 //!
 //! A texel blocks where it is nearer to the light than the receiver by more than
 //! the bias: a distance along the view's axis, in world units.
+//!
+//! # Receiver planes
+//!
+//! A receiver that casts is in the picture itself, and at the texels of a kernel it is
+//! nearer to the light or farther, the more so the lower the light and the wider the
+//! kernel: no constant bias suffices. With [`ReceiverPlanes`] a texel is held against
+//! the depth of the receiver's own plane at the texel's centre, where that is nearer
+//! than the receiver. Where it is farther, the receiver's depth stays: what stands on
+//! the plane behind the receiver is not in its way. (Receiver plane depth bias, Isidoro
+//! 2006, there with both signs.)
 
 use std::sync::Arc;
 
+use gnomon_raster::math::dot3;
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
+use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
-use crate::light_view::LightMapping;
+use crate::light_view::{LightMapping, Projection};
 use crate::soft_volumes::texel_of;
 use crate::vector::each2;
 
 /// Slot of the view's depths.
 const DEPTHS: usize = 1;
+/// Slot of the receivers' planes.
+const PLANES: usize = 2;
+
+/// Largest slopes of a plane, over a kernel, in its own distance: beyond, it is seen
+/// edge on.
+const STEEPEST: f32 = 1_048_576.0;
 
 /// Beyond these texels all coordinates are alike: outside.
 const FAR_OUTSIDE: f32 = 1_048_576.0;
@@ -32,8 +50,108 @@ pub struct Receiver<L: Lanes> {
     pub at: [F32<L>; 2],
     /// Distance along the view's axis, world units.
     pub distance: F32<L>,
-    /// Stored depths below this one block.
+    /// Stored depths below this one block at the receiver's own place.
     pub reference: F32<L>,
+    /// Its plane, where that is looked at.
+    pub plane: Option<ReceiverPlane<L>>,
+}
+
+impl<L: Lanes> Receiver<L> {
+    /// Stored depths below this one block at the centre of texel (column, row).
+    #[inline(always)]
+    fn reference_at(&self, [column, row]: [I32<L>; 2]) -> F32<L> {
+        let Some(plane) = &self.plane else {
+            return self.reference;
+        };
+        let [x, y] = [
+            column.to_f32() + 0.5 - self.at[0],
+            row.to_f32() + 0.5 - self.at[1],
+        ];
+        let zero = F32::splat(x.lanes(), 0.0);
+        let slope = x * plane.slope[0] + y * plane.slope[1];
+        let slope = slope.max(zero).min(F32::splat(x.lanes(), STEEPEST));
+        let nearer = match plane.projection {
+            Projection::Perspective => slope / (slope + 1.0) * plane.depth,
+            Projection::Orthographic => slope,
+        };
+        self.reference - nearer
+    }
+}
+
+/// The plane of a receiver in a view: how much nearer to the light it is at a texel.
+#[derive(Clone, Copy)]
+pub struct ReceiverPlane<L: Lanes> {
+    /// By the next column and row: perspective, the change of the reciprocal of its
+    /// distance from the light, over that reciprocal; orthographic, of its stored depth
+    /// with the sign changed.
+    pub slope: [F32<L>; 2],
+    /// The receiver's distance from the light, in the units of stored depths.
+    pub depth: F32<L>,
+    /// Which of both.
+    pub projection: Projection,
+}
+
+/// How receivers' planes are seen in a view. Texture 2 holds planes: unit normals and
+/// distances from the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReceiverPlanes {
+    /// Unit vectors to the right, downwards and along the view's axis.
+    pub axes: [[f32; 3]; 3],
+    /// From the light's centre to the mapping's.
+    pub base: [f32; 3],
+}
+uniforms!(ReceiverPlanes { axes, base });
+
+impl ReceiverPlanes {
+    /// The plane of a receiver at a distance along the view's axis from the mapping's
+    /// base. Of one that is seen from the side that the light does not reach, it is
+    /// level: it is not in the picture.
+    #[inline(always)]
+    fn plane<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        mapping: &LightMapping,
+        position: [F32<L>; 3],
+        distance: F32<L>,
+    ) -> ReceiverPlane<L> {
+        let own = [f.column(), f.row(), I32::splat(l, 0)];
+        let [x, y, z, from_eye] = texel_of(l, f, PLANES, own);
+        let normal = [x, y, z];
+        let along = each3(
+            #[inline(always)]
+            |k| {
+                let axis = self.axes[k];
+                (x * axis[0] + y * axis[1]) + z * axis[2]
+            },
+        );
+        let from = each3(
+            #[inline(always)]
+            |i| position[i] - mapping.centre[i] + self.base[i],
+        );
+        let depth = (distance + mapping.base) * (1.0 / (mapping.range.far - mapping.range.near));
+        let texel = 1.0 / (mapping.scale * mapping.size as f32);
+        let (from_light, per_texel) = match mapping.projection {
+            Projection::Perspective => {
+                let from_light = dot3(normal, from);
+                (from_light, (distance + mapping.base) * texel / from_light)
+            }
+            Projection::Orthographic => {
+                let step = texel / (mapping.range.far - mapping.range.near);
+                (along[2], F32::splat(l, step) / along[2])
+            }
+        };
+        let lit_side = (from_light * from_eye).gt(F32::splat(l, 0.0));
+        let slope = each2(
+            #[inline(always)]
+            |k| lit_side.select_f32(along[k] * per_texel, F32::splat(l, 0.0)),
+        );
+        ReceiverPlane {
+            slope,
+            depth,
+            projection: mapping.projection,
+        }
+    }
 }
 
 /// How the share of the light that is seen follows from depths near a receiver.
@@ -66,18 +184,26 @@ pub struct Shadow<F> {
     pub mapping: LightMapping,
     /// By how much a blocker must be nearer than the receiver, world units.
     pub bias: f32,
+    /// Whether texels are held against the receiver's plane, and how that is seen.
+    pub planes: Option<ReceiverPlanes>,
     /// What is made of the depths.
     pub filter: F,
     /// What is written.
     pub to: ShadowTo,
 }
-uniforms!(Shadow<F> { mapping, bias, filter, to });
+uniforms!(Shadow<F> {
+    mapping,
+    bias,
+    planes,
+    filter,
+    to
+});
 
 impl<F: ShadowFilter> FragmentShader for Shadow<F> {
     fn outputs(&self) -> FragmentOutputs {
         FragmentOutputs {
             discards: true,
-            textures: 2,
+            textures: if self.planes.is_some() { 3 } else { 2 },
             ..FragmentOutputs::default()
         }
     }
@@ -102,9 +228,15 @@ impl<F: ShadowFilter> FragmentShader for Shadow<F> {
                 receives.select_f32(texels, zero)
             },
         );
+        let distance = receives.select_f32(place.distance, one);
+        let plane = match &self.planes {
+            Some(planes) => Some(planes.plane(l, f, mapping, [x, y, z], distance)),
+            None => None,
+        };
         let receiver = Receiver {
             at,
-            distance: receives.select_f32(place.distance, one),
+            distance,
+            plane,
             // What is cleared to never blocks.
             reference: mapping.range.scaled(place.distance - self.bias).min(one),
         };
@@ -128,7 +260,8 @@ fn blocker<L: Lanes>(
     let depth = texel_of(l, f, DEPTHS, [column, row, I32::splat(l, 0)]);
     // Alpha is 1 inside the picture and 0 outside.
     let inside = depth[3].gt(F32::splat(l, 0.0));
-    (inside & depth[0].lt(receiver.reference), depth[0])
+    let reference = receiver.reference_at([column, row]);
+    (inside & depth[0].lt(reference), depth[0])
 }
 
 /// 1 where the texel at (column, row) blocks, else 0.

@@ -68,12 +68,16 @@ pub struct AmbientWithPosition {
     pub ambient: [f32; 4],
     /// Whether shadow falls on the surface.
     pub receives: bool,
+    /// Whether the facet's plane, unit normal and distance from the eye, is written to
+    /// attachment 2.
+    pub plane: bool,
     /// The camera.
     pub rays: PixelRays,
 }
 uniforms!(AmbientWithPosition {
     ambient,
     receives,
+    plane,
     rays
 });
 
@@ -103,6 +107,11 @@ impl FragmentShader for AmbientWithPosition {
         );
         let w = if self.receives { 1.0 } else { 0.0 };
         f.set_color(1, [px, py, pz, F32::splat(l, w)]);
+        if self.plane {
+            let [x, y, z] = normal;
+            let distance = f.varying(6);
+            f.set_color(2, [x, y, z, distance]);
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //! over the whole screen ([`visibility`]).
 
 pub(crate) mod casters;
+pub(crate) mod far_surface;
 pub mod frame_settings;
 pub(crate) mod horizon;
 pub mod light_samples;

@@ -97,7 +97,8 @@ impl<'a> SceneDraws<'a> {
     }
 
     /// The same, and writes where each pixel's surface is into `positions`: 16
-    /// bytes a fragment, counted as colour traffic of attachment 1.
+    /// bytes a fragment, counted as colour traffic of attachment 1, and as many of
+    /// attachment 2 where planes are wanted.
     pub fn ambient_pass_with_positions(
         &self,
         targets: &Targets,
@@ -108,6 +109,7 @@ impl<'a> SceneDraws<'a> {
             let shader = AmbientWithPosition {
                 ambient: s.ambient(self.scene.ambient),
                 receives: s.object.receives,
+                plane: positions.planes.is_some(),
                 rays,
             };
             s.draw_facets(
@@ -118,13 +120,13 @@ impl<'a> SceneDraws<'a> {
                     fragment: Some(shader.stage()),
                     primitive: s.primitive.clone(),
                     depth_stencil: DepthStencilState::opaque(),
-                    color_targets: vec![ColorTargetState::OPAQUE; 2],
+                    color_targets: vec![ColorTargetState::OPAQUE; 1 + positions.textures().count()],
                 },
             )
         };
         let mut pass = self.ambient_pass(targets);
-        pass.color
-            .push(attachment(positions.texture, LoadOp::Clear([0.0; 4])));
+        let cleared = |texture| attachment(texture, LoadOp::Clear([0.0; 4]));
+        pass.color.extend(positions.textures().map(cleared));
         pass.draws = self.surfaces.iter().map(draw).collect();
         pass
     }

@@ -150,11 +150,24 @@ impl<'a> ShadowedFrame<'a> {
     /// The GPU refuses the texture.
     pub fn with_positions(mut self) -> Result<(Self, Positions), TechniqueError> {
         let positions = Positions::create(self.size, &mut self.recording)?;
+        Ok(self.with_ambient_and(positions))
+    }
+
+    /// The same, and the planes of the facets that are seen.
+    ///
+    /// # Errors
+    /// The GPU refuses the textures.
+    pub fn with_positions_and_planes(mut self) -> Result<(Self, Positions), TechniqueError> {
+        let positions = Positions::with_planes(self.size, &mut self.recording)?;
+        Ok(self.with_ambient_and(positions))
+    }
+
+    fn with_ambient_and(mut self, positions: Positions) -> (Self, Positions) {
         let pass = self
             .draws
             .ambient_pass_with_positions(&self.targets, &positions);
         self.passes.push(Pass::new(PassRole::Ambient, pass));
-        Ok((self, positions))
+        (self, positions)
     }
 
     /// Adds a pass before the first light's.

@@ -13,6 +13,7 @@ use glam::DVec3;
 use gnomon_raster::state::PrimitiveState;
 use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, VertexBuffer};
 
+use super::far_surface::Clipped;
 use super::view::View;
 use crate::world::mesh::{narrow, widen};
 use crate::world::scene::{Material, MaterialPart, Object, Scene};
@@ -31,19 +32,23 @@ impl<'a> SurfaceDraw<'a> {
     pub(crate) fn of_object(scene: &Scene, view: &View, object: &'a Object) -> Vec<Self> {
         let shading = object.mesh.shading_vertices();
         let rows = shading.positions.iter().zip(&shading.normals);
-        let data = rows
-            .flat_map(|(p, n)| view.point(*p).into_iter().chain(*n))
-            .collect();
+        let clipped = Clipped::of(object, view);
+        let data = match &clipped {
+            Some(clipped) => clipped.data.clone(),
+            None => rows
+                .flat_map(|(p, n)| view.point(*p).into_iter().chain(*n))
+                .collect(),
+        };
         let mut primitive = clamped();
         if crosses_near_plane(scene, object) {
             primitive.clip_planes.push([0.0, 0.0, 1.0, 0.0]);
         }
         let vertices = Arc::new(VertexBuffer { data, stride: 6 });
         let draw = |part: MaterialPart| {
-            let own = part
-                .triangles
-                .iter()
-                .map(|&t| shading.triangles[t as usize]);
+            let own = part.triangles.iter().flat_map(|&t| match &clipped {
+                Some(clipped) => clipped.triangles[t as usize].clone(),
+                None => vec![shading.triangles[t as usize]],
+            });
             Self {
                 object,
                 material: part.material,

@@ -26,6 +26,9 @@ use crate::technique::{TechniqueError, VisibilityOutput};
 pub struct Positions {
     /// The image.
     pub texture: TextureId,
+    /// The planes of the facets there, if they are wanted: unit normals and distances
+    /// from the eye.
+    pub planes: Option<TextureId>,
 }
 
 impl Positions {
@@ -40,7 +43,26 @@ impl Positions {
         let desc = TextureDescriptor::d2("positions", Format::Rgba32Float, width, height);
         Ok(Self {
             texture: recording.create(&desc)?,
+            planes: None,
         })
+    }
+
+    /// With planes.
+    pub(crate) fn with_planes(
+        size: [u32; 2],
+        recording: &mut Recording,
+    ) -> Result<Self, TechniqueError> {
+        let positions = Self::create(size, recording)?;
+        let desc = TextureDescriptor::d2("planes", Format::Rgba32Float, size[0], size[1]);
+        Ok(Self {
+            planes: Some(recording.create(&desc)?),
+            ..positions
+        })
+    }
+
+    /// All of its textures.
+    pub(crate) fn textures(&self) -> impl Iterator<Item = TextureId> {
+        std::iter::once(self.texture).chain(self.planes)
     }
 }
 

@@ -92,10 +92,13 @@ impl Technique for Pcf {
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
         let settings = PcfSettings::read(params)?;
-        // As far as the farthest tap.
+        // Over a kernel a slope bias would have to be as wide as it is, and part shadows
+        // from their casters by as much.
+        let width = settings.width();
         let margin = Margin {
             bias: 0.5,
-            slope: f64::from(settings.width()) / 2.0,
+            slope: if width > 1 { 0.0 } else { 0.5 },
+            planes: width > 1,
         };
         let mapped = Mapped {
             name: self.name(),

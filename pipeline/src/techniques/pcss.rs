@@ -127,6 +127,7 @@ impl PcssSettings {
 const MARGIN: Margin = Margin {
     bias: 0.5,
     slope: 1.0,
+    planes: false,
 };
 
 impl Technique for Pcss {

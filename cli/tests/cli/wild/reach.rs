@@ -155,7 +155,7 @@ mod pipes {
         }
         for library in ["fifo", "p.mtl"] {
             model_with(&folder, library);
-            let (code, message) = gnomon(&folder, "render m.obj --size 64x48");
+            let (code, message) = gnomon(&folder, "render m.obj --size 64x48 --json");
             assert_eq!(code, Some(0), "{message}");
             assert!(message.contains("is a pipe"), "{message}");
         }
@@ -164,7 +164,7 @@ mod pipes {
     #[test]
     fn a_cache_of_pipes_costs_time_only() {
         let folder = folder_of("cache", &[]);
-        let compare = "compare cylinder --techniques shadow-volumes --size 16x12";
+        let compare = "compare cylinder --techniques shadow-volumes --size 16x12 --json";
         assert_eq!(gnomon(&folder, compare).0, Some(0));
         let cache = folder.path("out/oracle-cache");
         for entry in std::fs::read_dir(&cache).unwrap() {

@@ -50,7 +50,7 @@ use crate::parts::maps::light_view::{
     CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of,
 };
 use crate::parts::maps::lit_tiles::{FurtherLights, LitTiles};
-use crate::parts::maps::mapped::{MapNotes, ViewSettings, ViewsOfLight};
+use crate::parts::maps::mapped::{Hints, MapNotes, ViewSettings, ViewsOfLight};
 use crate::parts::passes::{LitTest, Targets, View};
 use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
@@ -177,11 +177,13 @@ impl Shadows<'_> {
             }
         }
         let ViewSettings { views, fitting } = self.settings.view;
-        let views = views_of(light, &self.around, views, &fitting);
+        let hints = Hints::of(views, fitting.near);
+        let found = views_of(light, &self.around, views, &fitting);
         let reference = light.reference(&self.around);
         let geometry = CasterGeometry::new(turn.scene, &self.around, &self.view, reference);
         let (mut list, mut counted) = (Vec::new(), ViewsOfLight::default());
-        for fitted in &views {
+        counted.missing = found.missing;
+        for fitted in &found.views {
             counted.add(fitted, self.offset(fitted), self.settings.side);
             let (passes, draw) = self.view_passes(light, fitted, tiles, &geometry, &label);
             let first = list.is_empty();
@@ -191,7 +193,7 @@ impl Shadows<'_> {
         if list.is_empty() {
             list.push(shadow_pass(turn.targets, true, Vec::new()));
         }
-        notes.add(counted, 0.0);
+        notes.add(counted, 0.0, hints);
         list
     }
 

@@ -90,7 +90,7 @@ impl Twin {
             near: None,
             to: FitTo::Casters,
         };
-        let mut views = views_of(&light, &around, Views::Auto, &fitting);
+        let mut views = views_of(&light, &around, Views::Auto, &fitting).views;
         assert_eq!(views.len(), 1, "one view for one picture");
         let fitted = views.remove(0);
         Self {

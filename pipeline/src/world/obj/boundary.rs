@@ -5,7 +5,7 @@
 //! triangle, goes by `b`. The triangle along the longest edge of such a way is
 //! split at the others, or, where there is none, triangles without area fill it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 
@@ -18,8 +18,8 @@ pub(super) type Triangle = [Corner; 3];
 /// Changes `triangles` until their boundary is `outline`.
 pub(super) fn mend(triangles: &mut Vec<Triangle>, outline: &[Corner]) {
     let mut excess = Excess::default();
-    for t in triangles.iter() {
-        (0..3).for_each(|k| excess.walk(t[k].0, t[(k + 1) % 3].0));
+    for [from, to] in triangles.iter().flat_map(edges) {
+        excess.walk(from, to);
     }
     for (k, corner) in outline.iter().enumerate() {
         excess.walk(outline[(k + 1) % outline.len()].0, corner.0);
@@ -28,9 +28,10 @@ pub(super) fn mend(triangles: &mut Vec<Triangle>, outline: &[Corner]) {
         return;
     }
     let places: BTreeMap<u32, DVec2> = outline.iter().copied().collect();
+    let mut triangles = ByEdge::new(triangles);
     while let Some(way) = excess.take_way() {
         let way: Vec<Corner> = way.into_iter().map(|i| (i, places[&i])).collect();
-        close(triangles, way);
+        triangles.close(way);
     }
 }
 
@@ -68,14 +69,16 @@ impl Excess {
     fn take_way(&mut self) -> Option<Vec<u32>> {
         let mut at = *self.0.keys().next()?;
         let mut way = vec![at];
+        let mut met = BTreeSet::from([at]);
         loop {
             at = *self.0.get(&at)?.keys().next()?;
-            if let Some(start) = way.iter().position(|w| *w == at) {
-                way.drain(..start);
+            if !met.insert(at) {
                 break;
             }
             way.push(at);
         }
+        let start = way.iter().position(|w| *w == at)?;
+        way.drain(..start);
         for k in 0..way.len() {
             self.take(way[k], way[(k + 1) % way.len()]);
         }
@@ -83,29 +86,89 @@ impl Excess {
     }
 }
 
-/// Takes the closed way out of the boundary.
-fn close(triangles: &mut Vec<Triangle>, mut way: Vec<Corner>) {
-    let after = (longest_edge(&way) + 1) % way.len();
-    way.rotate_left(after);
-    // Now the way begins at the end of its longest edge and ends at the start.
-    let (end, start) = (way[0].0, way[way.len() - 1].0);
-    let along = |t: &Triangle| (0..3).find(|&k| [t[k].0, t[(k + 1) % 3].0] == [start, end]);
-    let found = triangles
-        .iter()
-        .enumerate()
-        .find_map(|(i, t)| Some((i, along(t)?)));
-    match found {
-        Some((i, k)) => {
-            let apex = triangles.swap_remove(i)[(k + 2) % 3];
-            // A corner twice makes no triangle, and has no boundary.
-            let parts = way.windows(2).map(|w| [w[1], w[0], apex]);
-            triangles.extend(parts.filter(|t| t[0].0 != apex.0 && t[1].0 != apex.0));
-        }
-        None => {
-            let inner = &way[1..];
-            triangles.extend(inner.windows(2).map(|w| [way[0], w[1], w[0]]));
+/// Triangles by the edges that they walk.
+struct ByEdge<'a> {
+    triangles: &'a mut Vec<Triangle>,
+    places: BTreeMap<[u32; 2], BTreeSet<usize>>,
+}
+
+impl<'a> ByEdge<'a> {
+    fn new(triangles: &'a mut Vec<Triangle>) -> Self {
+        let mut all = Self {
+            triangles,
+            places: BTreeMap::new(),
+        };
+        (0..all.triangles.len()).for_each(|at| all.note(at));
+        all
+    }
+
+    fn note(&mut self, at: usize) {
+        for edge in edges(&self.triangles[at]) {
+            self.places.entry(edge).or_default().insert(at);
         }
     }
+
+    fn forget(&mut self, at: usize) {
+        for edge in edges(&self.triangles[at]) {
+            if let Some(places) = self.places.get_mut(&edge) {
+                places.remove(&at);
+            }
+        }
+    }
+
+    fn push(&mut self, triangle: Triangle) {
+        self.triangles.push(triangle);
+        self.note(self.triangles.len() - 1);
+    }
+
+    /// The first triangle that walks an edge, and which of its edges that is.
+    fn along(&self, edge: [u32; 2]) -> Option<(usize, usize)> {
+        let at = *self.places.get(&edge)?.first()?;
+        let k = edges(&self.triangles[at]).iter().position(|e| *e == edge)?;
+        Some((at, k))
+    }
+
+    /// Takes the closed way out of the boundary.
+    fn close(&mut self, mut way: Vec<Corner>) {
+        let after = (longest_edge(&way) + 1) % way.len();
+        way.rotate_left(after);
+        // Now the way begins at the end of its longest edge and ends at the start.
+        let (end, start) = (way[0].0, way[way.len() - 1].0);
+        let Some((at, k)) = self.along([start, end]) else {
+            let inner = way[1..].windows(2);
+            inner.for_each(|w| self.push([way[0], w[1], w[0]]));
+            return;
+        };
+        let apex = self.triangles[at][(k + 2) % 3];
+        let parts = way.windows(2).map(|w| [w[1], w[0], apex]);
+        // A corner twice makes no triangle, and has no boundary.
+        let mut parts = parts.filter(|t| t[0].0 != apex.0 && t[1].0 != apex.0);
+        self.forget(at);
+        match parts.next() {
+            Some(first) => {
+                self.triangles[at] = first;
+                self.note(at);
+            }
+            None => self.remove(at),
+        }
+        parts.for_each(|part| self.push(part));
+    }
+
+    /// The last one takes its place.
+    fn remove(&mut self, at: usize) {
+        let last = self.triangles.len() - 1;
+        if at < last {
+            self.forget(last);
+        }
+        self.triangles.swap_remove(at);
+        if at < last {
+            self.note(at);
+        }
+    }
+}
+
+fn edges(t: &Triangle) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|k| [t[k].0, t[(k + 1) % 3].0])
 }
 
 fn longest_edge(way: &[Corner]) -> usize {

@@ -5,9 +5,12 @@ mod camera;
 pub mod environment;
 pub mod file;
 mod frame_model;
+mod near;
 mod open;
 mod placed;
+mod pyramid;
 mod source;
+mod view_warnings;
 
 use std::sync::Arc;
 
@@ -15,6 +18,7 @@ pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
 pub use placed::PlacedError;
+pub(crate) use pyramid::{Pyramid, clip, clip_with};
 pub use source::SceneSource;
 
 pub use crate::world::material::{Material, MaterialPart};

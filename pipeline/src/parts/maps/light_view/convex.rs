@@ -1,28 +1,7 @@
-//! Convex polygons in space: clipping, and bounds of what a light sees of them.
+//! Bounds of what a light sees of convex polygons.
 
 use glam::DVec3;
 use gnomon_shaders::light_view::Projection;
-
-/// Keeps of a convex polygon where `side` is not negative; `side` must be affine.
-/// `scratch` is overwritten.
-pub(super) fn clip(
-    polygon: &mut Vec<DVec3>,
-    scratch: &mut Vec<DVec3>,
-    side: impl Fn(DVec3) -> f64,
-) {
-    scratch.clear();
-    for (k, &b) in polygon.iter().enumerate() {
-        let a = polygon[(k + polygon.len() - 1) % polygon.len()];
-        let (from, to) = (side(a), side(b));
-        if (from < 0.0) != (to < 0.0) {
-            scratch.push(a + (b - a) * (from / (from - to)));
-        }
-        if to >= 0.0 {
-            scratch.push(b);
-        }
-    }
-    std::mem::swap(polygon, scratch);
-}
 
 /// Where a point with positive z is in a picture: tangents, or lengths where views
 /// are orthographic.
@@ -114,23 +93,6 @@ impl TangentBox {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn clipping_keeps_what_is_on_the_side() {
-        let mut square = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
-        clip(&mut square, &mut Vec::new(), |p| p.x - 0.25);
-        let area = (1..square.len() - 1)
-            .map(|k| {
-                (square[k] - square[0])
-                    .cross(square[k + 1] - square[0])
-                    .length()
-                    / 2.0
-            })
-            .sum::<f64>();
-        assert!((area - 0.75).abs() < 1e-12);
-        clip(&mut square, &mut Vec::new(), |p| p.x - 2.0);
-        assert!(square.is_empty());
-    }
 
     #[test]
     fn boxes_join_meet_and_grow() {

@@ -10,9 +10,11 @@
 use glam::DVec3;
 use gnomon_shaders::light_view::{Projection, ViewRegion};
 
-use super::convex::{TangentBox, clip};
-use super::frame::{LightExtent, LightFrame};
+use super::between::Between;
+use super::convex::TangentBox;
+use super::frame::{FAR_AWAY, LightExtent, LightFrame};
 use super::surroundings::Surroundings;
+use crate::world::scene::clip;
 
 /// What a picture is fitted to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +64,13 @@ pub(crate) struct Fitted {
     pub(crate) half: f64,
     /// Distances that are stored as 0 and 1.
     pub(crate) range: [f64; 2],
+    /// Distance to which shaders' distances are relative: that stored as 0 where the
+    /// light is far away, else 0.
+    pub(crate) base: f64,
     /// Numbers of the objects that may cover some of it, ascending.
     pub(crate) objects: Vec<usize>,
+    /// Their triangles that may be in the way, where not all are drawn.
+    pub(crate) triangles: Option<Vec<(usize, u32)>>,
     /// Triangles that the near distance cuts inside the picture.
     pub(crate) cut: usize,
     /// Largest tangent that matters.
@@ -72,93 +79,193 @@ pub(crate) struct Fitted {
     pub(crate) limited: bool,
 }
 
-/// A caster's triangle as a view sees it.
-struct Facet {
-    bounds: TangentBox,
-    object: usize,
-    cut: bool,
+/// What comes of fitting.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Fit {
+    /// No shadow can fall: nothing is received there, or nothing is in the way.
+    Unshadowed,
+    /// All that is in the way is beyond the tangents that are looked at.
+    OutOfReach,
+    View(Box<Fitted>),
 }
 
-/// Fits a view to what is in its region; `None` where no shadow can fall: nothing
-/// is received there, or nothing is in the way.
+/// A caster's triangle as a view sees it.
+pub(super) struct Facet {
+    pub(super) bounds: TangentBox,
+    pub(super) object: usize,
+    pub(super) triangle: u32,
+    pub(super) cut: bool,
+}
+
+/// Fits a view to what is in its region.
 pub(crate) fn fit(
     around: &Surroundings<'_>,
     frame: LightFrame,
     region: ViewRegion,
     extent: LightExtent,
     fitting: &Fitting,
-) -> Option<Fitted> {
-    let farthest = farthest_receiver(around, &frame, region)?;
+) -> Fit {
+    let Some(farthest) = farthest_receiver(around, &frame, region) else {
+        return Fit::Unshadowed;
+    };
     let near = fitting.near.unwrap_or(farthest * NEAR_SHARE);
     let receivers = receivers_box(around, &frame, region, near);
     if receivers.is_empty() {
-        return None;
+        return Fit::Unshadowed;
     }
-    let far = farthest * (1.0 + SLACK);
-    let mut facets = facets(around, &frame, near);
-    facets.retain(|f| f.bounds.nearest < far * (1.0 + ROUNDING));
-    let matters = |f: &&Facet| f.bounds.nearest < farthest;
     let halves = [0, 1].map(|k| extent.half_along(frame.axes[k]));
-    let mut casters = joined(facets.iter().filter(matters));
-    let mut window = receivers;
-    // The first window is for the nearest of all casters, the second for the
-    // nearest that it left.
-    for _ in 0..2 {
-        let reach = (1.0 / casters.nearest - 1.0 / farthest).max(0.0);
-        window = receivers.grown(halves.map(|h| h * reach));
-        let inside = |f: &&Facet| matters(f) && f.bounds.overlaps(&window);
-        casters = joined(facets.iter().filter(inside));
-        if casters.is_empty() {
-            return None;
-        }
-    }
-    let inside = match fitting.to {
-        FitTo::Casters => window.meet(&casters),
-        FitTo::Receivers => window,
-    };
-    let widest = match (frame.projection, region) {
-        (Projection::Orthographic, _) => f64::INFINITY,
-        (_, ViewRegion::Front) => WIDEST_PLANAR,
-        (_, ViewRegion::Face) => WIDEST_FACE,
-    };
-    let limited = inside.steepest() > widest;
-    let steepest = inside.steepest();
-    let inside = inside.meet(&TangentBox {
-        low: [-widest; 2],
-        high: [widest; 2],
-        ..TangentBox::EMPTY
-    });
-    if inside.is_empty() {
-        return None;
-    }
-    let narrowest = match frame.projection {
-        Projection::Perspective => NARROWEST,
-        Projection::Orthographic => NARROWEST * farthest,
-    };
-    let (middle, half) = square(&inside, fitting.size, narrowest);
-    let picture = TangentBox {
-        low: middle.map(|m| m - half),
-        high: middle.map(|m| m + half),
-        ..inside
-    };
-    let picture = picture.grown([2.0 * half / f64::from(fitting.size) * SNAPPING; 2]);
-    facets.retain(|f| f.bounds.overlaps(&picture));
-    let mut objects: Vec<usize> = facets.iter().map(|f| f.object).collect();
-    objects.dedup();
-    Some(Fitted {
+    let scope = Scope {
         frame,
         region,
-        middle,
-        half,
-        range: [
-            (near * (1.0 + ROUNDING)).max(casters.nearest * (1.0 - SLACK)),
-            far,
-        ],
-        objects,
-        cut: facets.iter().filter(|f| f.cut).count(),
-        steepest,
-        limited,
-    })
+        halves,
+        fitting,
+        near,
+        farthest,
+        receivers,
+    };
+    let fit = scope.view(facets(around, &frame, near));
+    if scope.is_settled(&fit) {
+        return fit;
+    }
+    let range = [near, farthest];
+    let between = Between::new(around, frame, region, extent, receivers, range);
+    scope.exact_view(between.facets(around))
+}
+
+/// What a view is to hold.
+struct Scope<'a> {
+    frame: LightFrame,
+    region: ViewRegion,
+    /// Half widths of the light along the picture's axes.
+    halves: [f64; 2],
+    fitting: &'a Fitting,
+    /// Nearest distance that is looked at.
+    near: f64,
+    /// Distance of the farthest receiver.
+    farthest: f64,
+    receivers: TangentBox,
+}
+
+impl Scope<'_> {
+    /// Whether bounds of triangles told enough. They do not where some are cut or out
+    /// of reach, nor for lights from so far away that a level floor may be seen edge
+    /// on all over.
+    fn is_settled(&self, fit: &Fit) -> bool {
+        match fit {
+            Fit::Unshadowed => true,
+            Fit::OutOfReach => false,
+            Fit::View(view) => {
+                let near = self.frame.projection == Projection::Perspective && view.base == 0.0;
+                near && view.cut == 0 && !view.limited
+            }
+        }
+    }
+
+    /// The view of triangles all of which may be in the way; no others are drawn.
+    fn exact_view(&self, facets: Vec<Facet>) -> Fit {
+        let triangles = facets.iter().map(|f| (f.object, f.triangle)).collect();
+        let fit = self.view(facets);
+        match fit {
+            Fit::View(mut view) => {
+                view.triangles = Some(triangles);
+                Fit::View(view)
+            }
+            other => other,
+        }
+    }
+
+    fn view(&self, mut facets: Vec<Facet>) -> Fit {
+        let farthest = self.farthest;
+        facets.retain(|f| f.bounds.nearest < farthest * (1.0 + SLACK) * (1.0 + ROUNDING));
+        let Some((window, casters)) = self.window(&facets) else {
+            return Fit::Unshadowed;
+        };
+        let inside = match self.fitting.to {
+            FitTo::Casters => window.meet(&casters),
+            FitTo::Receivers => window,
+        };
+        let steepest = inside.steepest();
+        let inside = inside.meet(&TangentBox {
+            low: [-self.widest(); 2],
+            high: [self.widest(); 2],
+            ..TangentBox::EMPTY
+        });
+        if inside.is_empty() {
+            return Fit::OutOfReach;
+        }
+        let (range, base) = self.range(casters.nearest);
+        let (middle, half) = square(&inside, self.fitting.size, self.narrowest(range, base));
+        let picture = TangentBox {
+            low: middle.map(|m| m - half),
+            high: middle.map(|m| m + half),
+            ..inside
+        };
+        let picture = picture.grown([2.0 * half / f64::from(self.fitting.size) * SNAPPING; 2]);
+        facets.retain(|f| f.bounds.overlaps(&picture));
+        let mut objects: Vec<usize> = facets.iter().map(|f| f.object).collect();
+        objects.dedup();
+        Fit::View(Box::new(Fitted {
+            frame: self.frame,
+            region: self.region,
+            middle,
+            half,
+            range,
+            base,
+            objects,
+            triangles: None,
+            cut: facets.iter().filter(|f| f.cut).count(),
+            steepest,
+            limited: steepest > self.widest(),
+        }))
+    }
+
+    /// Where receivers may read, and bounds of the casters there; `None` without any.
+    fn window(&self, facets: &[Facet]) -> Option<(TangentBox, TangentBox)> {
+        let matters = |f: &&Facet| f.bounds.nearest < self.farthest;
+        let mut casters = joined(facets.iter().filter(matters));
+        let mut window = self.receivers;
+        // The first window is for the nearest of all casters, the second for the
+        // nearest that it left.
+        for _ in 0..2 {
+            let reach = (1.0 / casters.nearest - 1.0 / self.farthest).max(0.0);
+            window = self.receivers.grown(self.halves.map(|h| h * reach));
+            let inside = |f: &&Facet| matters(f) && f.bounds.overlaps(&window);
+            casters = joined(facets.iter().filter(inside));
+            if casters.is_empty() {
+                return None;
+            }
+        }
+        Some((window, casters))
+    }
+
+    fn widest(&self) -> f64 {
+        match (self.frame.projection, self.region) {
+            (Projection::Orthographic, _) => f64::INFINITY,
+            (_, ViewRegion::Front) => WIDEST_PLANAR,
+            (_, ViewRegion::Face) => WIDEST_FACE,
+        }
+    }
+
+    /// Distances that are stored as 0 and 1, and what shaders' are relative to.
+    fn range(&self, nearest: f64) -> ([f64; 2], f64) {
+        let (near, farthest) = (self.near * (1.0 + ROUNDING), self.farthest);
+        let depth = FAR_AWAY * (farthest - nearest);
+        if self.frame.projection == Projection::Orthographic || depth >= farthest {
+            let from = near.max(nearest * (1.0 - SLACK));
+            return ([from, farthest * (1.0 + SLACK)], 0.0);
+        }
+        let slack = depth.max(farthest * f64::EPSILON) * SLACK;
+        let from = near.max(nearest - slack);
+        ([from, farthest + slack], from)
+    }
+
+    fn narrowest(&self, [from, to]: [f64; 2], base: f64) -> f64 {
+        match self.frame.projection {
+            Projection::Orthographic => NARROWEST * self.farthest,
+            Projection::Perspective if base > 0.0 => NARROWEST * (to - from) / to,
+            Projection::Perspective => NARROWEST,
+        }
+    }
 }
 
 /// Middle and half side of the square round `inside`, with free texels.
@@ -190,10 +297,21 @@ pub(super) fn receivers_beyond(
     frame: &LightFrame,
     region: ViewRegion,
     near: f64,
+    visit: impl FnMut(&[DVec3]),
+) {
+    clipped(around.receivers(), frame, region, near, visit);
+}
+
+/// The same of some polygons.
+pub(super) fn clipped<'a>(
+    receivers: impl Iterator<Item = &'a [DVec3]>,
+    frame: &LightFrame,
+    region: ViewRegion,
+    near: f64,
     mut visit: impl FnMut(&[DVec3]),
 ) {
     let (mut polygon, mut scratch) = (Vec::new(), Vec::new());
-    for receiver in around.receivers() {
+    for receiver in receivers {
         polygon.clear();
         polygon.extend(receiver.iter().map(|p| frame.local(*p)));
         if polygon.iter().any(|p| p.z < near) {
@@ -258,6 +376,7 @@ fn facets(around: &Surroundings<'_>, frame: &LightFrame, near: f64) -> Vec<Facet
             all.push(Facet {
                 bounds,
                 object,
+                triangle: t as u32,
                 cut,
             });
         }

@@ -8,6 +8,11 @@ use crate::geometry::area_light::AreaLight;
 use crate::technique::TechniqueError;
 use crate::world::light::{HardLight, Light, LightShape};
 
+/// Distance over extent in depth of what is lit, beyond which a light is far away:
+/// numbers are then relative to what is lit, for distances from the light leave them
+/// too few digits.
+pub(super) const FAR_AWAY: f64 = 16.0;
+
 /// A point of a light with orthonormal axes, world space: right, down and along
 /// the axis of a view; right × down = along.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,12 +138,25 @@ impl ViewedLight {
         Ok(Self { frame, extent })
     }
 
-    /// A point near the light, or near what is lit where the light has no place.
+    /// Whether it has no place, or is far away from what is lit.
+    pub(crate) fn is_far(&self, around: &Surroundings<'_>) -> bool {
+        self.frame.projection == Projection::Orthographic || self.far_middle(around).is_some()
+    }
+
+    /// A point near the light, or near what is lit where the light is far.
     pub(crate) fn reference(&self, around: &Surroundings<'_>) -> DVec3 {
-        match self.frame.projection {
-            Projection::Perspective => self.frame.centre,
-            Projection::Orthographic => around.middle().unwrap_or(self.frame.centre),
-        }
+        let middle = match self.frame.projection {
+            Projection::Perspective => self.far_middle(around),
+            Projection::Orthographic => around.middle(),
+        };
+        middle.unwrap_or(self.frame.centre)
+    }
+
+    /// The middle of what is lit, if the light's centre is far away from it.
+    fn far_middle(&self, around: &Surroundings<'_>) -> Option<DVec3> {
+        let middle = around.middle()?;
+        let distance = (middle - self.frame.centre).length();
+        (distance > FAR_AWAY * around.radius(middle)).then_some(middle)
     }
 }
 
@@ -153,7 +171,7 @@ fn along_direction(towards: DVec3) -> Option<LightFrame> {
 }
 
 /// Half the side of a square as large as a unit disc.
-const SQUARE_OF_DISC: f64 = 0.886_226_925_452_758;
+pub(super) const SQUARE_OF_DISC: f64 = 0.886_226_925_452_758;
 
 fn axes_and_extent(shape: &LightShape) -> ([DVec3; 3], LightExtent) {
     let square = |[right, down, along]: [DVec3; 3], half: f64| {

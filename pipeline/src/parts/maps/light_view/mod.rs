@@ -20,6 +20,7 @@
 //! Casters outside a view are left out, which changes no bit: `skip=off` draws
 //! them all.
 
+mod between;
 mod convex;
 mod fit;
 mod frame;
@@ -31,6 +32,7 @@ mod tests;
 
 use gnomon_shaders::light_view::{Projection, ViewRegion};
 
+use fit::Fit;
 pub(crate) use fit::{FitTo, Fitted, Fitting};
 pub(crate) use frame::{LightExtent, LightFrame, ViewedLight};
 pub(crate) use picture::{CasterGeometry, LightMap};
@@ -53,18 +55,47 @@ pub(crate) enum Views {
     Cube,
 }
 
-/// The views of `light` that some shadow may come from; several have regions that
-/// do not overlap. None: all receivers are lit.
+/// The views of a light.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct LightViews {
+    /// Those that some shadow may come from; several have regions that do not overlap.
+    /// None: all receivers are lit.
+    pub(crate) views: Vec<Fitted>,
+    /// Views that would have to be so wide that there are none.
+    pub(crate) missing: usize,
+}
+
+impl LightViews {
+    fn of(fits: impl Iterator<Item = Fit>) -> Self {
+        let mut all = Self::default();
+        for fit in fits {
+            match fit {
+                Fit::Unshadowed => {}
+                Fit::OutOfReach => all.missing += 1,
+                Fit::View(view) => all.views.push(*view),
+            }
+        }
+        all
+    }
+
+    /// Whether planar views hold all that they should.
+    fn are_narrow(&self) -> bool {
+        let narrow = |v: &Fitted| v.steepest <= WIDEST && v.cut == 0;
+        self.missing == 0 && self.views.iter().all(narrow)
+    }
+}
+
+/// The views of `light`.
 pub(crate) fn views_of(
     light: &ViewedLight,
     around: &Surroundings<'_>,
     views: Views,
     fitting: &Fitting,
-) -> Vec<Fitted> {
+) -> LightViews {
     if light.frame.projection == Projection::Orthographic {
         let frame = before_everything(light.frame, around);
         let view = fit::fit(around, frame, ViewRegion::Front, light.extent, fitting);
-        return view.into_iter().collect();
+        return LightViews::of(std::iter::once(view));
     }
     let frame = match light.extent {
         LightExtent::Flat(_) => light.frame,
@@ -73,20 +104,19 @@ pub(crate) fn views_of(
     let planar = || {
         let both = [frame, frame.reversed()].into_iter();
         let one = |f| fit::fit(around, f, ViewRegion::Front, light.extent, fitting);
-        both.filter_map(one).collect::<Vec<_>>()
+        LightViews::of(both.map(one))
     };
     let cube = || {
         let faces = light.frame.faces().into_iter();
         let one = |f| fit::fit(around, f, ViewRegion::Face, light.extent, fitting);
-        faces.filter_map(one).collect::<Vec<_>>()
+        LightViews::of(faces.map(one))
     };
     match views {
         Views::Planar => planar(),
         Views::Cube => cube(),
         Views::Auto => {
             let found = planar();
-            let narrow = found.iter().all(|v| v.steepest <= WIDEST && v.cut == 0);
-            if narrow { found } else { cube() }
+            if found.are_narrow() { found } else { cube() }
         }
     }
 }

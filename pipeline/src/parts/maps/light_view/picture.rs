@@ -8,7 +8,8 @@ use gnomon_raster::{
     DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp, Recording, RenderPass,
     RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
 };
-use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth, Projection};
+use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth, Projection, ViewRegion};
+use gnomon_shaders::shadow_maps::ReceiverPlanes;
 use gnomon_shaders::surface::PixelRays;
 use gnomon_shaders::transform::{ClipFromWorld, Facets};
 
@@ -122,6 +123,7 @@ impl Fitted {
         let shader = PlanarDepth {
             rays: self.rays(geometry.reference, map.size),
             projection: self.frame.projection,
+            base: self.base as f32,
             range: self.depth_range(),
             slope: map.slope as f32,
             slope_limit: (self.texel_at_far(map.size) * SLOPE_LIMIT) as f32,
@@ -148,28 +150,85 @@ impl Fitted {
             }),
             draws: casters
                 .filter(|c| !skip || self.objects.binary_search(&c.object).is_ok())
-                .map(|c| Draw::indexed(&c.name, &pipeline, &c.vertices, &c.indices))
+                .filter_map(|c| Some((c, self.drawn(c)?)))
+                .map(|(c, indices)| Draw::indexed(&c.name, &pipeline, &c.vertices, &indices))
                 .collect(),
         }
+    }
+
+    /// What of a caster is drawn; `None` for nothing.
+    fn drawn(&self, caster: &CasterDraw) -> Option<Arc<IndexBuffer>> {
+        let Some(triangles) = &self.triangles else {
+            return Some(caster.indices.clone());
+        };
+        let first = triangles.partition_point(|(object, _)| *object < caster.object);
+        let own = triangles[first..].iter();
+        let own = own.take_while(|(object, _)| *object == caster.object);
+        let indices: Vec<u32> = own.flat_map(|(_, t)| 3 * t..3 * t + 3).collect();
+        (!indices.is_empty()).then(|| Arc::new(IndexBuffer::new(indices)))
     }
 
     /// Where positions relative to the origin of `view` are in the picture.
     pub(crate) fn mapping(&self, view: &View, size: u32) -> LightMapping {
         let scale = 0.5 / self.half;
-        LightMapping {
+        let mapping = LightMapping {
             centre: narrow(view.relative(self.frame.centre)),
             axes: self.frame.axes.map(narrow),
             projection: self.frame.projection,
             scale: scale as f32,
             offset: self.middle.map(|m| (0.5 - m * scale) as f32),
+            base: 0.0,
             range: self.depth_range(),
             size,
             region: self.region,
+        };
+        if self.base == 0.0 {
+            return mapping;
+        }
+        let [right, down, along] = self.frame.axes;
+        // Where the regions of faces meet, coordinates must be those of the cube.
+        if self.region == ViewRegion::Face {
+            let before = self.frame.centre + along * self.base;
+            return LightMapping {
+                centre: narrow(view.relative(before)),
+                base: self.base as f32,
+                ..mapping
+            };
+        }
+        // From the middle of the picture, with axes across that keep to it.
+        let [x, y] = self.middle;
+        let middle = self.frame.centre + self.middle_ray() * self.base;
+        LightMapping {
+            centre: narrow(view.relative(middle)),
+            axes: [right - along * x, down - along * y, along].map(narrow),
+            offset: [0.5; 2],
+            base: self.base as f32,
+            ..mapping
         }
     }
 
+    /// How receivers' planes are seen.
+    pub(crate) fn planes(&self) -> ReceiverPlanes {
+        let mapped_from = match (self.base > 0.0, self.region) {
+            (false, _) => DVec3::ZERO,
+            (true, ViewRegion::Face) => self.frame.axes[2] * self.base,
+            (true, ViewRegion::Front) => self.middle_ray() * self.base,
+        };
+        ReceiverPlanes {
+            axes: self.frame.axes.map(narrow),
+            base: narrow(mapped_from),
+        }
+    }
+
+    /// Through the middle of the picture, one long along the axis.
+    fn middle_ray(&self) -> DVec3 {
+        let [right, down, along] = self.frame.axes;
+        let [x, y] = self.middle;
+        along + right * x + down * y
+    }
+
     fn depth_range(&self) -> DepthRange {
-        let [near, far] = self.range.map(|z| z as f32);
+        let [near, far] = self.range.map(|z| (z - self.base) as f32);
         DepthRange { near, far }
     }
 
@@ -192,7 +251,7 @@ impl Fitted {
         let texel = self.texel(size);
         let (eye, corner) = (self.frame.centre - reference, right * x + down * y);
         let (eye, first) = match self.frame.projection {
-            Projection::Perspective => (eye, along + corner),
+            Projection::Perspective => (eye + (along + corner) * self.base, along + corner),
             Projection::Orthographic => (eye + corner, along),
         };
         PixelRays {

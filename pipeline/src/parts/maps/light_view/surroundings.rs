@@ -1,10 +1,13 @@
 //! What views are fitted to: the receivers that the camera sees and the casters.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 
-use super::convex::clip;
+use crate::geometry::winding::mesh_winding;
+use crate::world::adjacency::EdgeAdjacency;
 use crate::world::mesh::Mesh;
-use crate::world::scene::{Camera, Scene};
+use crate::world::scene::{Pyramid, Scene};
 
 /// Receivers and casters of a scene, gathered once for all its lights.
 pub(crate) struct Surroundings<'a> {
@@ -16,6 +19,9 @@ pub(crate) struct Surroundings<'a> {
     owners: Vec<Owner>,
     /// Casters: number in the scene, and mesh.
     pub(super) casters: Vec<(usize, &'a Mesh)>,
+    scene: &'a Scene,
+    /// Whether each polygon is on the far side of its object; found when asked for.
+    hidden: OnceLock<Vec<bool>>,
 }
 
 /// A triangle of a scene.
@@ -35,6 +41,8 @@ impl<'a> Surroundings<'a> {
             ends: Vec::new(),
             owners: Vec::new(),
             casters: Vec::new(),
+            scene,
+            hidden: OnceLock::new(),
         };
         let pyramid = Pyramid::new(&scene.camera, size);
         for (number, object) in scene.objects.iter().enumerate() {
@@ -77,6 +85,32 @@ impl<'a> Surroundings<'a> {
         self.owners.iter().copied().zip(self.receivers())
     }
 
+    /// The same without those on the far side of a closed object, which are not seen.
+    pub(super) fn seen_receivers(&self) -> impl Iterator<Item = &[DVec3]> {
+        let hidden = self.hidden.get_or_init(|| self.find_hidden());
+        let all = self.receivers().zip(hidden);
+        all.filter(|(_, hidden)| !**hidden)
+            .map(|(polygon, _)| polygon)
+    }
+
+    fn find_hidden(&self) -> Vec<bool> {
+        let eye = self.scene.camera.eye;
+        let objects = self.scene.objects.iter();
+        let outwards: Vec<f64> = objects.map(|o| outwards(&o.mesh, eye)).collect();
+        let hidden = |owner: &Owner| {
+            let mesh = &self.scene.objects[owner.object].mesh;
+            let [a, b, c] = mesh.corners(owner.triangle);
+            outwards[owner.object] * (b - a).cross(c - a).dot(eye - a) < 0.0
+        };
+        self.owners.iter().map(hidden).collect()
+    }
+
+    /// Largest distance of a receiver's corner from a point.
+    pub(super) fn radius(&self, from: DVec3) -> f64 {
+        let distances = self.corners.iter().map(|p| (*p - from).length());
+        distances.fold(0.0, f64::max)
+    }
+
     /// Mean of the receivers' corners; `None` where nothing is seen.
     pub(super) fn middle(&self) -> Option<DVec3> {
         let count = self.corners.len() as f64;
@@ -85,39 +119,14 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// What a camera sees, as planes.
-struct Pyramid {
-    eye: DVec3,
-    near: f64,
-    forward: DVec3,
-    /// Normals of the sides, inwards.
-    sides: [DVec3; 4],
-}
-
-impl Pyramid {
-    fn new(camera: &Camera, [width, height]: [u32; 2]) -> Self {
-        let [right, up, forward] = camera.basis();
-        let tan = camera.tan_half_fov();
-        let across = forward * (tan * f64::from(width) / f64::from(height));
-        let above = forward * tan;
-        Self {
-            eye: camera.eye,
-            near: camera.near,
-            forward,
-            sides: [across + right, across - right, above + up, above - up],
-        }
-    }
-
-    fn clip(&self, polygon: &mut Vec<DVec3>, scratch: &mut Vec<DVec3>) {
-        clip(polygon, scratch, |p| {
-            self.forward.dot(p - self.eye) - self.near
-        });
-        for side in self.sides {
-            if polygon.is_empty() {
-                return;
-            }
-            clip(polygon, scratch, |p| side.dot(p - self.eye));
-        }
+/// 1 where the mesh's triangles face outwards, -1 where they face inwards; 0 where it
+/// is open or the eye is inside, so that both sides may be seen.
+fn outwards(mesh: &Mesh, eye: DVec3) -> f64 {
+    let edges = EdgeAdjacency::new(mesh.triangles());
+    if edges.closedness(mesh).is_closed() && mesh_winding(mesh, eye) == 0 {
+        mesh.signed_volume().signum()
+    } else {
+        0.0
     }
 }
 

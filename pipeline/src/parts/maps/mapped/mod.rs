@@ -7,6 +7,8 @@
 mod notes;
 mod settings;
 
+use std::collections::BTreeMap;
+
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};
@@ -14,7 +16,7 @@ use gnomon_shaders::light_view::LightMapping;
 use gnomon_shaders::shadow_maps::{Shadow, ShadowTo};
 use gnomon_shaders::transform::FullScreen;
 
-pub(crate) use notes::{MapNotes, ViewsOfLight};
+pub(crate) use notes::{Hints, MapNotes, ViewsOfLight};
 pub(crate) use settings::{MapSettings, Margin, ViewSettings};
 
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
@@ -32,6 +34,8 @@ pub(crate) struct LookUp<'a> {
     light: &'a ViewedLight,
     mapping: LightMapping,
     bias: f64,
+    /// Whether texels are held against receivers' planes.
+    planes: bool,
     /// Of all the light's points, where it is looked at from several.
     share: f32,
 }
@@ -48,6 +52,7 @@ impl LookUp<'_> {
         Shadow {
             mapping: self.mapping,
             bias: self.bias as f32,
+            planes: self.planes.then(|| self.fitted.planes()),
             filter,
             to: ShadowTo::Visibility,
         }
@@ -70,6 +75,11 @@ pub(crate) struct Sources {
 }
 
 impl Sources {
+    /// Whether receivers tell the light's place from a direction by a few digits only.
+    fn are_far(&self, around: &Surroundings<'_>) -> bool {
+        self.lights.first().is_some_and(|l| l.is_far(around))
+    }
+
     /// The light's centre for all of it.
     pub(crate) fn centre(
         technique: &'static str,
@@ -104,20 +114,28 @@ impl Mapped<'_> {
         sources: impl Fn(usize) -> Result<Sources, TechniqueError>,
         shader: impl Fn(&LookUp<'_>) -> FragmentStage,
     ) -> Result<Frame, TechniqueError> {
+        let around = Surroundings::new(self.scene, self.size);
         let frame = ShadowedFrame::new(self.scene, self.size, &self.frame)?;
         let frame = frame.with_horizon(self.name, self.horizon, false);
-        let (mut frame, positions) = frame.with_positions()?;
+        let lights = frame.lights.clone();
+        let sources = lights.iter().map(|l| Ok((*l, sources(*l)?)));
+        let sources = sources.collect::<Result<BTreeMap<_, _>, TechniqueError>>()?;
+        let by_planes = |s: &Sources| self.margin.planes || s.are_far(&around);
+        let (mut frame, positions) = match sources.values().any(by_planes) {
+            true => frame.with_positions_and_planes()?,
+            false => frame.with_positions()?,
+        };
         let [width, height] = self.size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
         let visibility = VisibilityTexture::red(frame.recording.create(&desc)?);
         let mut map = LightMap::create(self.maps.view.fitting.size, &mut frame.recording)?;
-        map.slope = self.maps.slope_bias.unwrap_or(self.margin.slope);
-        let around = Surroundings::new(self.scene, self.size);
-        let lights = frame.lights.clone();
         let view = View::new(&self.scene.camera, self.size);
         let further = FurtherLights::new(self.scene, &around, &view, &lights, self.maps.skip);
         frame.lit(LitTest::Visibility(visibility), |light| {
-            let sources = sources(light.number)?;
+            let sources = &sources[&light.number];
+            let planes = by_planes(sources);
+            let slope = if planes { 0.0 } else { self.margin.slope };
+            map.slope = self.maps.slope_bias.unwrap_or(slope);
             let tiles = further.tiles(light.number);
             let one = OneLight {
                 view: &view,
@@ -125,11 +143,12 @@ impl Mapped<'_> {
                 maps: &self.maps,
                 map,
                 positions,
+                planes,
                 visibility,
                 margin: self.margin,
                 tiles: tiles.as_ref(),
             };
-            Ok(one.passes(&sources, &shader, light))
+            Ok(one.passes(sources, &shader, light))
         })
     }
 }
@@ -141,6 +160,8 @@ struct OneLight<'a> {
     maps: &'a MapSettings,
     map: LightMap,
     positions: Positions,
+    /// Whether texels are held against receivers' planes.
+    planes: bool,
     visibility: VisibilityTexture,
     margin: Margin,
     /// Where shadows matter; `None`: everywhere.
@@ -174,7 +195,9 @@ impl OneLight<'_> {
             fitting,
         } = self.maps.view;
         for light in &sources.lights {
-            for fitted in views_of(light, self.around, kind, &fitting) {
+            let found = views_of(light, self.around, kind, &fitting);
+            views.missing += found.missing;
+            for fitted in found.views {
                 let bias = self.maps.bias(&fitted, self.margin);
                 views.add(&fitted, bias, fitting.size);
                 let picture = fitted.pass(
@@ -190,6 +213,7 @@ impl OneLight<'_> {
                     light,
                     mapping: fitted.mapping(self.view, fitting.size),
                     bias,
+                    planes: self.planes,
                     share: 1.0 / sources.lights.len() as f32,
                 });
                 passes.push(look_up(load, Some((stage, sources.blend))));
@@ -199,7 +223,7 @@ impl OneLight<'_> {
         if passes.is_empty() {
             passes.push(look_up(load, None));
         }
-        notes.add(views, self.map.slope);
+        notes.add(views, self.map.slope, Hints::of(kind, fitting.near));
         passes
     }
 
@@ -219,10 +243,12 @@ impl OneLight<'_> {
                 depth_stencil: DepthStencilState::default(),
                 color_targets: vec![blend],
             };
-            let bindings = [self.positions.texture, self.map.depth].map(binding);
+            let planes = self.positions.planes.filter(|_| self.planes);
+            let textures = [self.positions.texture, self.map.depth].into_iter();
+            let bindings = textures.chain(planes).map(binding).collect();
             match self.tiles {
-                Some(tiles) => tiles.draw(pipeline, bindings.to_vec()),
-                None => full_screen(pipeline, bindings.to_vec()),
+                Some(tiles) => tiles.draw(pipeline, bindings),
+                None => full_screen(pipeline, bindings),
             }
         };
         let pass = RenderPass {

@@ -1,6 +1,6 @@
 //! What is said of a frame's light views: figures and warnings.
 
-use super::super::light_view::Fitted;
+use super::super::light_view::{Fitted, Views};
 use super::super::lit_tiles::LitTiles;
 use crate::parts::shadowed_frame::Notes;
 use crate::technique::{Figure, Warning};
@@ -12,9 +12,36 @@ pub(crate) struct MapNotes<'a> {
     label: &'a dyn Fn(&str) -> String,
 }
 
+/// What can be done about views that do not hold what they should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Hints {
+    cut: &'static str,
+    limited: &'static str,
+}
+
+impl Hints {
+    /// With these parameters. A cube looks all round, so that only what is next to
+    /// the light is beyond it, where a smaller near distance would not help: views
+    /// would have to be wider still.
+    pub(crate) fn of(views: Views, near: Option<f64>) -> Self {
+        Self {
+            cut: match near {
+                Some(_) => "set near to less, or to auto",
+                None => "set near to less than the figure `near`, or move them off the light",
+            },
+            limited: match views {
+                Views::Planar => "set view to cube or auto",
+                Views::Auto | Views::Cube => "move them off the light",
+            },
+        }
+    }
+}
+
 /// A light's views, counted together.
 #[derive(Default)]
 pub(crate) struct ViewsOfLight {
+    /// Views that there should be and are not.
+    pub(crate) missing: usize,
     views: usize,
     cut: usize,
     limited: usize,
@@ -48,7 +75,8 @@ impl<'a> MapNotes<'a> {
     }
 
     /// Figures and warnings of `views`, drawn with `slope`.
-    pub(crate) fn add(&mut self, views: ViewsOfLight, slope: f64) {
+    pub(crate) fn add(&mut self, views: ViewsOfLight, slope: f64, hints: Hints) {
+        self.warn_of(&views, hints);
         self.figure("views", views.views as f64);
         if let Some([near, far]) = views.range {
             self.figure("bias", views.bias);
@@ -57,18 +85,28 @@ impl<'a> MapNotes<'a> {
             self.figure("near", near);
             self.figure("far", far);
         }
-        self.warn(
-            "casters-at-near-distance",
-            views.cut,
-            "triangles of casters reach nearer to the light than is looked at and are cut there; \
-             set near to less",
-        );
-        self.warn(
-            "view-limited",
-            views.limited,
-            "views do not hold all casters that matter, for those are too near to the light or \
-             beside it; try view=cube or a larger near",
-        );
+    }
+
+    /// Where views are limited, what the near distance cuts is beyond them as well:
+    /// one hint is enough.
+    fn warn_of(&mut self, views: &ViewsOfLight, hints: Hints) {
+        let limited = views.limited + views.missing;
+        if limited > 0 {
+            self.warn(
+                "view-limited",
+                limited,
+                "views do not hold all casters that matter, for those are too near to the light \
+                 or beside it",
+                hints.limited,
+            );
+        } else if views.cut > 0 {
+            self.warn(
+                "casters-at-near-distance",
+                views.cut,
+                "triangles of casters reach nearer to the light than is looked at and are cut there",
+                hints.cut,
+            );
+        }
     }
 
     fn figure(&mut self, name: &str, value: f64) {
@@ -76,14 +114,12 @@ impl<'a> MapNotes<'a> {
         self.notes.figures.push(Figure { name, value });
     }
 
-    fn warn(&mut self, code: &'static str, count: usize, what: &str) {
-        if count > 0 {
-            let message = format!("{}: {count} {what}", (self.label)("light view"));
-            self.notes.warnings.push(Warning {
-                code,
-                count,
-                message,
-            });
-        }
+    fn warn(&mut self, code: &'static str, count: usize, what: &str, hint: &str) {
+        let message = format!("{}: {count} {what}; {hint}", (self.label)("light view"));
+        self.notes.warnings.push(Warning {
+            code,
+            count,
+            message,
+        });
     }
 }

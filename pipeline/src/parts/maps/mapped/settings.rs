@@ -146,6 +146,10 @@ pub(crate) struct Margin {
     pub(crate) bias: f64,
     /// Slope bias in texels.
     pub(crate) slope: f64,
+    /// Whether texels are held against receivers' planes instead, which needs no slope
+    /// bias; so they always are under lights that are far away, which may be low over
+    /// all that is seen.
+    pub(crate) planes: bool,
 }
 
 impl Margin {
@@ -153,5 +157,6 @@ impl Margin {
     pub(crate) const ONE_TEXEL: Self = Self {
         bias: 0.25,
         slope: 0.5,
+        planes: false,
     };
 }

@@ -62,7 +62,10 @@ const BACKEND: Param<Backend> = Param::choice(
     Backend::Exact.word(),
     "coverage of an edge in closed form, or from paper III's 4D texture; images need the texture",
 )
-.when(EXTENDED);
+.when(Condition::All(&[
+    EXTENDED,
+    Condition::Is("light-image", &["white"]),
+]));
 
 const EXTENDED: Condition = Condition::Lights(LightFact::Extended);
 

@@ -11,6 +11,7 @@ use super::{Moment, SceneFileError, environment, shapes};
 use crate::world::files::SceneFolder;
 use crate::world::light::{ConvexPolygon, Light, LightShape};
 use crate::world::mesh::Shading;
+use crate::world::scene::near;
 use crate::world::scene::{Camera, Material, Object, Scene, SceneWarning};
 use crate::world::shape::on_circle;
 
@@ -45,6 +46,9 @@ pub(super) fn scene(
         let (object, warnings) = object(source, folder, index, object_table, moment.time)?;
         out.objects.push(object);
         out.warnings.extend(warnings);
+    }
+    if table.camera.near.is_none() {
+        out.camera.near = near::derived(&out);
     }
     out.name = table.name.clone();
     light_by_environment(source, folder, &table, moment, &mut out)?;

@@ -11,7 +11,7 @@
 //! target = [0.0, 0.5, 0.0]
 //! up = [0.0, 1.0, 0.0]            # optional; so are the next two
 //! fov = 45.0                      # vertical, degrees
-//! near = 0.1
+//! near = 0.1                      # if not given, before all that is seen
 //!
 //! [[lights]]                      # point, square, rectangle, polygon, disc, sphere,
 //!                                 # directional

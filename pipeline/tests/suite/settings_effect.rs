@@ -200,7 +200,8 @@ fn samples(info: &ParamInfo, now: &str) -> Vec<String> {
             all.extend(near.iter().map(u64::to_string));
         }
         Domain::Decimal { .. } => {
-            let from = number.unwrap_or(0.3);
+            // Nearer than some casters are to the lights, and farther than others.
+            let from = number.unwrap_or(1.6);
             all.extend(
                 [0.0, 0.5 * from + 0.1, 2.0 * from]
                     .iter()

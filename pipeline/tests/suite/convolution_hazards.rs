@@ -146,6 +146,7 @@ where
             projection: Projection::Perspective,
             scale: 0.5,
             offset: [0.5; 2],
+            base: 0.0,
             range: DepthRange {
                 near: 1.0,
                 far: 3.0,

@@ -726,6 +726,40 @@ mod light_sizes {
         }
     }
 
+    /// Where the light is at the origin, f64 tells its corners apart whatever its size.
+    #[test]
+    fn tiny_lights_at_the_origin_cast_hard_shadows() {
+        let at_origin = |light: Light| {
+            let by = DVec3::new(1.5, 4.0, 1.0);
+            let mut scene = scene(light);
+            for object in &mut scene.objects {
+                let moved = Shape::from_mesh(&object.mesh).translated(-by);
+                let casts = object.casts;
+                *object = solid(&object.name, moved);
+                object.casts = casts;
+            }
+            scene.camera.eye -= by;
+            scene.camera.target -= by;
+            scene
+        };
+        let position = DVec3::ZERO;
+        let hard = draw(&at_origin(light(LightShape::Point { position })), HARD, &[]);
+        for exponent in [-9, -18, -20, -25, -30, -35, -38, -45, -60, -100] {
+            let size = libm::pow(10.0, f64::from(exponent));
+            for light in [square([0.0; 3], size), sphere([0.0; 3], 0.5 * size)] {
+                let scene = at_origin(light);
+                for technique in ALL_SOFT {
+                    let done = draw(&scene, technique, &[]);
+                    let off = hard.visibility.iter().zip(&done.visibility);
+                    let off = off.filter(|(a, b)| (*a - *b).abs() > 1.5 / 255.0).count();
+                    println!("{technique}, 1e{exponent}: {off} pixels off");
+                    assert!(off <= 5, "{technique}, 1e{exponent}");
+                    assert!(!codes(&done).contains(&"nan"), "{technique}, 1e{exponent}");
+                }
+            }
+        }
+    }
+
     /// What the camera looks at may be far as well.
     #[test]
     fn a_far_target_is_no_reason_to_lose_a_far_light() {

@@ -143,11 +143,8 @@ impl Technique for SoftShadowVolumes {
             let contact = light_contacts::warning(scene, number);
             turn.notes.warnings.extend(contact);
             let (source, reach, seen) = (turn.light(), casters.size(), soft.seen());
-            let mut light = SoftLight::new(self.name(), source, number, turn.view(), reach, seen)?;
+            let light = SoftLight::new(self.name(), source, number, turn.view(), reach, seen)?;
             let silhouettes = casters.silhouettes(light.centre);
-            if light.has_no_extent_for(&silhouettes.edges) {
-                light.sides.clear();
-            }
             let covering = &settings.covering;
             let mut volumes = LightVolumes {
                 view: turn.view(),

@@ -260,11 +260,8 @@ impl PartOfLight<'_> {
         let source = &self.parts[self.part];
         let seen = settings.soft.seen();
         let reach = self.casters.size();
-        let mut light = SoftLight::new(self.technique, source, turn.number, view, reach, seen)?;
+        let light = SoftLight::new(self.technique, source, turn.number, view, reach, seen)?;
         let groups = settings.groups(self.casters, &light);
-        if groups.iter().all(|g| light.has_no_extent_for(&g.edges)) {
-            light.sides.clear();
-        }
         let volumes = PartVolumes {
             view,
             targets: turn.targets,

@@ -5,7 +5,7 @@ use gnomon_shaders::coverage::{Edge, FlatLight, Image, Projector, SphereLight};
 use gnomon_shaders::soft_volumes::HardPlane;
 
 use super::edges::SoftEdge;
-use crate::geometry::area_light::{AreaLight, nearest_on_segment};
+use crate::geometry::area_light::AreaLight;
 use crate::parts::passes::View;
 use crate::technique::TechniqueError;
 use crate::world::light::{HardLight, Light, LightShape};
@@ -26,9 +26,6 @@ pub(crate) struct SoftLight {
 /// A light so many times farther than the camera looks, or than the casters are large,
 /// is far: positions relative to its centre would lose digits.
 const FAR: f64 = 64.0;
-/// The share of its distance from the nearest edge below which a light has no extent
-/// for f32.
-const NO_EXTENT: f64 = 1.0 / 16_777_216.0;
 
 /// One side of a flat light, or all of a sphere.
 pub(crate) struct LightSide {
@@ -71,8 +68,10 @@ impl SoftLight {
             origin,
             is_far,
         };
-        if extent(&light.shape) <= f64::EPSILON * centre.abs().max_element() {
-            return Ok(soft); // its corners are one point
+        // Its corners are one point, or no lengths of f32 apart.
+        let least = f64::EPSILON * centre.abs().max_element();
+        if extent(&light.shape) <= least.max(f64::from(f32::MIN_POSITIVE)) {
+            return Ok(soft);
         }
         let rows = match light.shape {
             LightShape::Point { .. } => return Ok(soft),
@@ -141,17 +140,6 @@ impl SoftLight {
             // Through the centre; a far one is nothing to take differences from.
             offset: if self.is_far { offset() as f32 } else { 0.0 },
         }
-    }
-
-    /// Whether f32 cannot tell the light from a point at any of the edges.
-    pub(crate) fn has_no_extent_for(&self, edges: &[SoftEdge]) -> bool {
-        let Some(side) = self.sides.first() else {
-            return false;
-        };
-        let reach = side.area.bounding_radius() / NO_EXTENT;
-        let distance =
-            |e: &SoftEdge| (nearest_on_segment(e.ends, self.centre) - self.centre).length();
-        !edges.is_empty() && edges.iter().all(|e| distance(e) > reach)
     }
 }
 

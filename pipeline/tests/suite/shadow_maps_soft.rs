@@ -1,14 +1,12 @@
 //! PCF, PCSS and N shadow maps against closed forms and the exact oracle
 //! (docs/papers.md, baselines).
 
-mod map_support;
-
+use crate::map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
 use glam::DVec3;
 use gnomon_pipeline::truth::metrics::visibility::{ErrorSummary, VisibilityError};
 use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
 use gnomon_pipeline::world::light::{ConvexPolygon, LightShape};
 use gnomon_pipeline::world::scene::Scene;
-use map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
 
 const DISTANCES: [f64; 4] = [3.0, 4.9, 5.1, 8.0];
 

@@ -1,8 +1,7 @@
 //! Shadow maps and what is looked up in them: against rays, counted, and with odd
 //! scenes and parameters (docs/papers.md, baselines).
 
-mod map_support;
-
+use crate::map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
 use glam::DVec3;
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
@@ -11,7 +10,6 @@ use gnomon_pipeline::world::light::{HardLight, LightShape};
 use gnomon_pipeline::world::mesh::{Mesh, Shading};
 use gnomon_pipeline::world::scene::{Material, Object, Scene, builtin};
 use gnomon_pipeline::world::shape;
-use map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
 
 /// Whether a shadow map that is right in every texel says so for `point`: whether
 /// something is nearer to the light than the point by more than the bias, for each

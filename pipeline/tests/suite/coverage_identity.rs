@@ -2,11 +2,9 @@
 //! fraction of the light, against polygon clipping that knows of no edges, sides
 //! or sectors.
 
-mod wedge_support;
-
+use crate::wedge_support::{Frame, KINDS, Kind, Random, shape};
 use glam::{DVec2, DVec3};
 use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline, loop_visibility, umbra_side};
-use wedge_support::{Frame, KINDS, Kind, Random, shape};
 
 /// A simple loop in light coordinates (units of the light's half size), clockwise:
 /// star-shaped round some place near the light.

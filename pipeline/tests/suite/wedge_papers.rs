@@ -1,14 +1,12 @@
 //! The wedges of papers III and IV: they enclose the penumbra, and by how much.
 
-mod wedge_support;
-
+use crate::wedge_support::{
+    Frame, KINDS, Kind, Random, edge, grazing_point, inside, light, light_point, shape, winding,
+};
 use glam::DVec3;
 use gnomon_pipeline::geometry::area_light::AreaLight;
 use gnomon_pipeline::geometry::wedge::polyhedron::{Ends, Polyhedron};
 use gnomon_pipeline::geometry::wedge::{Construction, Wedge, WedgeStatistics};
-use wedge_support::{
-    Frame, KINDS, Kind, Random, edge, grazing_point, inside, light, light_point, shape, winding,
-};
 
 const PAPERS: [Construction; 2] = [Construction::BoundingSphere, Construction::Tight];
 

@@ -1,7 +1,8 @@
 //! The exact wedge is the penumbra: nothing outside, nothing more inside.
 
-mod wedge_support;
-
+use crate::wedge_support::{
+    Frame, KINDS, Kind, Random, edge, generators, grazing_point, inside, light, shape, winding,
+};
 use glam::DVec3;
 use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline};
 use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
@@ -12,9 +13,6 @@ use gnomon_pipeline::world::adjacency::EdgeAdjacency;
 use gnomon_pipeline::world::light::HardLight;
 use gnomon_pipeline::world::mesh::{Mesh, Shading};
 use gnomon_pipeline::world::shape::icosphere;
-use wedge_support::{
-    Frame, KINDS, Kind, Random, edge, generators, grazing_point, inside, light, shape, winding,
-};
 
 const ROUNDING: f64 = 1e-12;
 

@@ -1,14 +1,12 @@
 //! Edges that wedge constructions fear, at scales and places where digits run out:
 //! every wedge is finite, closed, encloses, and is accounted for.
 
-mod wedge_support;
-
+use crate::wedge_support::{Frame, KINDS, Kind, Random, light_point, shape};
 use glam::DVec3;
 use gnomon_pipeline::geometry::area_light::AreaLight;
 use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline, loop_visibility};
 use gnomon_pipeline::geometry::wedge::{Construction, Wedge, WedgeStatistics};
 use gnomon_pipeline::world::light::LightShape;
-use wedge_support::{Frame, KINDS, Kind, Random, light_point, shape};
 
 const CONSTRUCTIONS: [Construction; 3] = [
     Construction::BoundingSphere,

@@ -1,14 +1,12 @@
 //! The linked wedges of paper I: continuous across side planes, closed, and what
 //! they miss of the penumbra, which they do not claim to enclose.
 
-mod wedge_support;
-
+use crate::wedge_support::{Random, winding};
 use glam::DVec3;
 use gnomon_pipeline::geometry::wedge::WedgeMesh;
 use gnomon_pipeline::geometry::wedge::paper1::{
     LinkedSettings, LinkedStatistics, LinkedWedge, Overlap, link, smoothed,
 };
-use wedge_support::{Random, winding};
 
 const CENTRE: DVec3 = DVec3::new(0.0, 0.0, 8.0);
 

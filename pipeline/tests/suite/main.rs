@@ -1,0 +1,39 @@
+//! Everything that must hold of scenes, geometry, truth and techniques, in one
+//! binary: it links once.
+
+mod comparison;
+mod convolution_hazards;
+mod convolution_soft_shadows;
+mod convolution_tables;
+mod coverage_identity;
+mod data_meshes;
+mod environment;
+mod hard_truth_speed;
+mod heat;
+mod horizon;
+mod lit_tiles;
+mod map_support;
+mod near_plane;
+mod open_casters;
+mod outlines;
+mod penumbra_wedges;
+mod settings_effect;
+mod shader_identity;
+mod shadow_maps;
+mod shadow_maps_soft;
+mod shadow_volumes;
+mod soft_residuals;
+mod soft_shaders;
+mod soft_shadow_volumes;
+mod soft_stability;
+mod subdivision;
+mod technique_determinism;
+mod views;
+mod volumes_in_use;
+mod wedge_adversarial;
+mod wedge_exact;
+mod wedge_halves;
+mod wedge_linked;
+mod wedge_papers;
+mod wedge_support;
+mod wedge_work;

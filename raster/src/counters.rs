@@ -8,6 +8,109 @@
 use crate::format::Format;
 use crate::{MAX_COLOR_ATTACHMENTS, MAX_SHADER_COUNTS, MAX_TEXTURES};
 
+/// What is summed field by field.
+trait Sum {
+    fn sum(&mut self, o: &Self);
+}
+
+impl Sum for u64 {
+    fn sum(&mut self, o: &Self) {
+        *self += o;
+    }
+}
+
+impl<T: Sum, const N: usize> Sum for [T; N] {
+    fn sum(&mut self, o: &Self) {
+        self.iter_mut().zip(o).for_each(|(a, b)| a.sum(b));
+    }
+}
+
+/// Sums all fields of a struct. They are taken apart without `..`: a field that is
+/// left out does not compile.
+macro_rules! sum_fields {
+    ($name:ident { $($field:ident),+ $(,)? }) => {
+        impl Sum for $name {
+            fn sum(&mut self, o: &Self) {
+                let Self { $($field),+ } = o;
+                $( self.$field.sum($field); )+
+            }
+        }
+    };
+}
+sum_fields!(Traffic {
+    read_accesses,
+    read_bytes,
+    write_accesses,
+    write_bytes
+});
+sum_fields!(Accesses {
+    z_read,
+    z_write,
+    stencil_read,
+    stencil_write,
+    hiz_read,
+    hiz_write,
+    color_read,
+    color_write,
+    tex_fetch,
+    tex_texel
+});
+sum_fields!(PrimitiveCounters {
+    vertex_shader_invocations,
+    input,
+    non_finite,
+    frustum_culled,
+    clipped,
+    degenerate,
+    face_culled,
+    rasterized,
+    steep_depth_planes
+});
+sum_fields!(FragmentCounters {
+    generated,
+    hiz_killed,
+    bounds_failed,
+    stencil_failed,
+    depth_failed,
+    discarded,
+    written
+});
+sum_fields!(TileCounters {
+    tested,
+    culled,
+    accepted
+});
+sum_fields!(EventCounters {
+    silent_z_writes,
+    silent_stencil_writes,
+    silent_color_writes,
+    blend_saturated,
+    source_clamped,
+    nan_canonicalised,
+    depth_clamped
+});
+sum_fields!(ClientTraffic {
+    z,
+    stencil,
+    hiz,
+    color,
+    tex,
+    tex_fetches,
+    vertex,
+    index,
+    packed_depth_stencil
+});
+sum_fields!(Counters {
+    primitives,
+    fragments,
+    fragment_shader_invocations,
+    shader_counts,
+    tiles,
+    events,
+    traffic,
+    accesses
+});
+
 /// Accesses and bytes of one memory client.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
@@ -22,13 +125,6 @@ pub struct Traffic {
 }
 
 impl Traffic {
-    fn add(&mut self, o: &Self) {
-        self.read_accesses += o.read_accesses;
-        self.read_bytes += o.read_bytes;
-        self.write_accesses += o.write_accesses;
-        self.write_bytes += o.write_bytes;
-    }
-
     fn of(reads: u64, writes: u64, bytes: u64) -> Self {
         Self {
             read_accesses: reads,
@@ -184,25 +280,33 @@ impl ClientTraffic {
     /// Client names and traffic, in a fixed order, clients without traffic left out.
     #[must_use]
     pub fn named(&self) -> Vec<(String, Traffic)> {
-        let mut all = vec![
-            ("z".to_owned(), self.z),
-            ("stencil".to_owned(), self.stencil),
-        ];
+        // Counts of fetches are no traffic; depth and stencil are not counted twice.
+        let Self {
+            z,
+            stencil,
+            hiz,
+            color,
+            tex,
+            tex_fetches: _,
+            vertex,
+            index,
+            packed_depth_stencil: _,
+        } = self;
+        let mut all = vec![("z".to_owned(), *z), ("stencil".to_owned(), *stencil)];
         all.extend(
-            self.color
+            color
                 .iter()
                 .enumerate()
                 .map(|(i, t)| (format!("color[{i}]"), *t)),
         );
         all.extend(
-            self.tex
-                .iter()
+            tex.iter()
                 .enumerate()
                 .map(|(i, t)| (format!("tex[{i}]"), *t)),
         );
-        all.push(("vertex".to_owned(), self.vertex));
-        all.push(("index".to_owned(), self.index));
-        all.push(("hiz".to_owned(), self.hiz));
+        all.push(("vertex".to_owned(), *vertex));
+        all.push(("index".to_owned(), *index));
+        all.push(("hiz".to_owned(), *hiz));
         all.retain(|(_, t)| *t != Traffic::default());
         all
     }
@@ -237,37 +341,7 @@ pub(crate) fn packed_word_bytes(f: Format) -> u64 {
 impl Counters {
     /// Adds another draw's.
     pub fn add(&mut self, o: &Self) {
-        macro_rules! sum { ($f:ident : $($g:ident),+) => { $( self.$f.$g += o.$f.$g; )+ }; }
-        macro_rules! sum_each { ($f:ident : $($g:ident),+) => {
-            $( self.$f.$g.iter_mut().zip(o.$f.$g).for_each(|(a, b)| *a += b); )+
-        }; }
-        sum!(primitives: vertex_shader_invocations, input, non_finite, frustum_culled, clipped, degenerate);
-        sum!(primitives: face_culled, rasterized, steep_depth_planes);
-        sum!(fragments: generated, hiz_killed, bounds_failed, stencil_failed, depth_failed, discarded, written);
-        sum!(tiles: tested, culled, accepted);
-        sum!(events: silent_z_writes, silent_stencil_writes, nan_canonicalised, depth_clamped);
-        sum_each!(events: silent_color_writes, blend_saturated, source_clamped);
-        sum!(accesses: z_read, z_write, stencil_read, stencil_write, hiz_read, hiz_write);
-        sum_each!(accesses: color_read, color_write, tex_fetch, tex_texel);
-        sum_each!(traffic: tex_fetches);
-        let counts = self.shader_counts.iter_mut().zip(o.shader_counts);
-        counts.for_each(|(a, b)| *a += b);
-        self.fragment_shader_invocations += o.fragment_shader_invocations;
-        let t = &mut self.traffic;
-        t.z.add(&o.traffic.z);
-        t.stencil.add(&o.traffic.stencil);
-        t.hiz.add(&o.traffic.hiz);
-        t.vertex.add(&o.traffic.vertex);
-        t.index.add(&o.traffic.index);
-        t.packed_depth_stencil.add(&o.traffic.packed_depth_stencil);
-        t.color
-            .iter_mut()
-            .zip(&o.traffic.color)
-            .for_each(|(a, b)| a.add(b));
-        t.tex
-            .iter_mut()
-            .zip(&o.traffic.tex)
-            .for_each(|(a, b)| a.add(b));
+        self.sum(o);
     }
 
     /// Turns access counts into traffic; vertex and index traffic are added by

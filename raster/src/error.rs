@@ -135,6 +135,8 @@ pub enum Error {
     TileSize { given: u32 },
     #[error("{given} threads cannot be started: {reason}")]
     Threads { given: usize, reason: String },
+    #[error("{what} takes {bytes} bytes, which the system does not give")]
+    OutOfMemory { what: String, bytes: u64 },
     #[error(
         "the floating-point unit flushes denormals to zero; results would differ between machines"
     )]

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use crate::MAX_THREADS;
 use crate::command::CommandList;
 use crate::counters::{ClientTraffic, Counters};
 use crate::error::Error;
@@ -17,7 +16,8 @@ use crate::texture::{Texture, TextureDescriptor, TextureId};
 /// of the counters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GpuConfig {
-    /// Worker threads; 0 for one per core.
+    /// Most worker threads; 0 for as many as [`crate::worker_threads`] says. No more are
+    /// started than there is work for; 1 keeps all work on the caller's thread.
     pub threads: usize,
     /// Side of execution tiles in pixels: 16, 32, 64 or 128.
     pub tile: u32,
@@ -41,7 +41,12 @@ impl Default for GpuConfig {
 /// A GPU and its textures.
 pub struct Gpu {
     pub(crate) config: GpuConfig,
+    /// Most worker threads.
+    pub(crate) threads: usize,
+    /// Those that have been started.
     pub(crate) pool: Option<rayon::ThreadPool>,
+    /// Work is shared out among them.
+    pub(crate) parallel: bool,
     pub(crate) textures: Vec<Texture>,
     /// Memory of past batches, so that no frame has to ask the system for it again.
     pub(crate) recycled: Recycled,
@@ -124,11 +129,11 @@ impl SubmitReport {
 }
 
 impl Gpu {
-    /// Starts the worker threads.
+    /// A GPU without textures. Worker threads start when there is work for them.
     ///
     /// # Errors
-    /// For a tile size that is not supported, threads that cannot be started, or
-    /// a floating-point unit that is set to flush denormals.
+    /// For a tile size that is not supported, too many threads, or a floating-point
+    /// unit that is set to flush denormals.
     pub fn new(config: GpuConfig) -> Result<Self, Error> {
         if ![16, 32, 64, 128].contains(&config.tile) {
             return Err(Error::TileSize { given: config.tile });
@@ -136,19 +141,11 @@ impl Gpu {
         if execute::denormals_are_flushed() {
             return Err(Error::DenormalsFlushed);
         }
-        if config.threads > MAX_THREADS {
-            return Err(Error::Threads {
-                given: config.threads,
-                reason: format!("the limit is {MAX_THREADS}"),
-            });
-        }
-        let pool = match config.threads {
-            1 => None,
-            n => Some(execute::start_pool(n)?),
-        };
         Ok(Self {
             config,
-            pool,
+            threads: execute::worker_threads(config.threads)?,
+            pool: None,
+            parallel: false,
             textures: Vec::new(),
             recycled: Recycled::default(),
         })
@@ -160,18 +157,16 @@ impl Gpu {
         self.config
     }
 
-    /// Number of worker threads.
+    /// Most worker threads.
     #[must_use]
     pub fn threads(&self) -> usize {
-        self.pool
-            .as_ref()
-            .map_or(1, rayon::ThreadPool::current_num_threads)
+        self.threads
     }
 
     /// Creates a texture of zeros.
     ///
     /// # Errors
-    /// For sizes or levels that are not possible.
+    /// For sizes or levels that are not possible, or that there is no memory for.
     pub fn create_texture(&mut self, desc: &TextureDescriptor) -> Result<TextureId, Error> {
         let texture = Texture::new(desc)?;
         self.textures.push(texture);
@@ -230,7 +225,8 @@ impl Gpu {
     /// Validates all of `list`, then executes it.
     ///
     /// # Errors
-    /// For invalid use; nothing has been executed then.
+    /// For invalid use, or threads that cannot be started: nothing has been executed
+    /// then. For vertices that there is no memory for: passes before theirs have been.
     pub fn submit(&mut self, list: &CommandList) -> Result<SubmitReport, Error> {
         execute::submit(self, list, None)
     }

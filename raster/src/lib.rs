@@ -59,6 +59,13 @@
 //! assert_eq!(counted.traffic.color[0].write_bytes, 24);
 //! # Ok::<(), gnomon_raster::Error>(())
 //! ```
+//!
+//! # Stack
+//!
+//! Rendering needs less than a megabyte of stack at every SIMD level, beside what
+//! shaders need, in builds without optimisation too: measured are 96 KiB (AVX-512) to
+//! 320 KiB (scalar) there, and about a tenth in optimised ones. With
+//! [`GpuConfig::threads`] 1 it is the caller's, otherwise workers', which have 4 MiB.
 
 mod command;
 mod counters;
@@ -69,6 +76,7 @@ mod geometry;
 mod gpu;
 mod limits;
 pub mod math;
+pub mod memory;
 mod observer;
 mod recording;
 mod sampling;
@@ -81,6 +89,7 @@ mod tile;
 pub use command::*;
 pub use counters::*;
 pub use error::Error;
+pub use execute::worker_threads;
 pub use format::Format;
 pub use gpu::{DrawReport, Gpu, GpuConfig, PassReport, SubmitReport};
 pub use limits::*;

@@ -18,5 +18,8 @@ pub const MAX_TEXTURE_BYTES: u64 = 1 << 32;
 pub const MAX_DRAW_VERTICES: u32 = 1 << 27;
 /// Most instances of a draw.
 pub const MAX_INSTANCES: u32 = 1 << 20;
+/// Smallest width and height of a viewport, in pixels: 2⁻¹¹². Guard-band distances are
+/// at most 2¹⁴ pixels over half of it, 2¹²⁷, and no float overflows.
+pub const MIN_VIEWPORT_SIDE: f32 = f32::from_bits((127 - 112) << 23);
 /// Most worker threads.
 pub const MAX_THREADS: usize = 1024;

@@ -27,6 +27,7 @@ use std::sync::Arc;
 use crate::command::CommandList;
 use crate::error::Error;
 use crate::format::encode;
+use crate::memory::reserve;
 use crate::texture::{
     Subresource, Texture, TextureDescriptor, TextureId, check_packed, image_size, pack, validate,
 };
@@ -192,7 +193,11 @@ fn packed_color(
             expected,
         });
     }
-    let mut bytes = Vec::with_capacity(expected * format.bytes() as usize);
+    let mut bytes = Vec::new();
+    let size = expected * format.bytes() as usize;
+    reserve(&mut bytes, size, || {
+        format!("the texels of `{}`", descriptor.label)
+    })?;
     for texel in texels {
         pack(format, encode(format, *texel), &mut bytes);
     }

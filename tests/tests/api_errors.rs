@@ -124,6 +124,11 @@ fn rows() -> Vec<Row> {
         }, "WrongAspect", &["`m`"]),
         ("too few texels", |u| u.gpu.texture_mut(u.color)?.write_color(Subresource::default(), &[[0.0; 4]; 63]), "TexelCount", &["`image`", "64 texels", "63 were"]),
         ("too many raw texels", |u| u.gpu.texture_mut(u.color)?.write_raw(Subresource { mip: 1, layer: 0 }, &[[0; 4]; 17]), "TexelCount", &["16 texels", "17 were"]),
+        ("too few bytes", |u| u.gpu.texture_mut(u.color)?.write_packed(Subresource::default(), &[0; 7]), "ByteCount", &["`image`", "7"]),
+        ("stored depth", |u| {
+            let id = u.gpu.create_texture(&TextureDescriptor::d2("d", Format::Depth32FloatStencil8, 1, 1))?;
+            u.gpu.texture_mut(id)?.write_packed(Subresource::default(), &[0, 0, 0x80, 0x40, 0])
+        }, "StoredDepth", &["`d`", "0x40800000", "0x3f800000"]),
         ("too few depths", |u| u.gpu.texture_mut(u.depth)?.write_depth_stencil(Subresource::default(), &[0.0; 1], &[0; 64]), "TexelCount", &["64 texels", "1 were"]),
         ("too few stencils", |u| u.gpu.texture_mut(u.depth)?.write_depth_stencil(Subresource::default(), &[0.0; 64], &[0; 2]), "TexelCount", &["64 texels", "2 were"]),
 
@@ -171,6 +176,8 @@ fn rows() -> Vec<Row> {
         ("NaN bias", pipeline!(p => p.depth_stencil.bias.slope = f32::NAN), "OutOfRange", &["depth bias", "NaN", "finite"]),
         ("reversed bounds", pipeline!(p => p.depth_stencil.depth.bounds = Some([0.75, 0.25])), "OutOfRange", &["depth bounds 0.75..0.25", "min ≤ max"]),
         ("viewport of no size", draw!(d => d.viewport = Some(Viewport::full(0, 8))), "OutOfRange", &["viewport", "width: 0.0", "12288"]),
+        ("narrow viewport", draw!(d => d.viewport = Some(Viewport { width: 1.9e-34, ..Viewport::full(8, 8) })), "OutOfRange", &["width: 1.9e-34", "1.93e-34"]),
+        ("low viewport", draw!(d => d.viewport = Some(Viewport { height: f32::from_bits(1), ..Viewport::full(8, 8) })), "OutOfRange", &["height: 1e-45", "2⁻¹¹²"]),
         ("viewport depth", draw!(d => d.viewport = Some(Viewport { max_depth: 1.5, ..Viewport::full(8, 8) })), "OutOfRange", &["viewport depth 0..1.5", "0..=1"]),
         ("endless scissor", draw!(d => d.scissor = Some(ScissorRect { x: 9, y: 0, width: u32::MAX, height: 1 })), "OutOfRange", &["scissor", "4294967295", "32 bits"]),
         ("reversed levels", submit!(u => {
@@ -185,6 +192,10 @@ fn rows() -> Vec<Row> {
 
         ("tile of 48", |_| configured(|c| c.tile = 48), "TileSize", &["48", "16, 32, 64, 128"]),
         ("threads", |_| configured(|c| c.threads = 1025), "Threads", &["1025", "limit is 1024"]),
+        ("memory", |_| {
+            let what = || "half of all addresses".to_owned();
+            gnomon_raster::memory::filled(0u8, isize::MAX as usize, what).map(drop)
+        }, "OutOfMemory", &["half of all addresses takes 9223372036854775807 bytes"]),
     ]
 }
 

@@ -4,8 +4,11 @@
 //! `GNOMON_TWIN_SHOW` how many differences are printed;
 //! the skip setting, tile size, threads and SIMD level differ from seed to seed.
 
-use gnomon_tests::check::{check, explain};
+use gnomon_raster::MIN_VIEWPORT_SIDE;
+use gnomon_raster::state::Viewport;
+use gnomon_tests::check::{check, config_of, explain, fault};
 use gnomon_tests::parallel;
+use gnomon_tests::random::random_case;
 
 fn setting(name: &str, default: u64) -> u64 {
     match std::env::var(name) {
@@ -44,4 +47,58 @@ fn gpu_equals_twin_on_random_cases() {
         "{} of {cases} seeds differ: {seeds:?}",
         seeds.len()
     );
+}
+
+/// Every draw of a random case in a viewport at the ends of what is valid.
+fn in_viewport(seed: u64, viewport: Viewport) -> Result<(), String> {
+    let mut case = random_case(seed);
+    let draws = case.passes.iter_mut().flat_map(|p| &mut p.draws);
+    draws.for_each(|d| d.viewport = Some(viewport));
+    match fault(&case, config_of(seed)) {
+        Some(what) => Err(format!("seed {seed}, {viewport:?}: {what}")),
+        None => Ok(()),
+    }
+}
+
+#[test]
+fn gpu_equals_twin_in_extreme_viewports() {
+    let least = f32::from_bits(1);
+    let spans = [
+        [0.0, MIN_VIEWPORT_SIDE],
+        [12288.0, MIN_VIEWPORT_SIDE],
+        [-4096.0, 1e-30],
+        // The far edge is rounded away.
+        [4095.9, 1e-4],
+        [3.0, 1e-3],
+        [-4096.0, 16384.0],
+        [-least, 12288.0],
+    ];
+    let depths = [
+        [0.0, 1.0],
+        [least, 1.0],
+        [-0.0, least],
+        [1.0, -0.0],
+        [0.5, 0.5],
+    ];
+    let mut viewports = Vec::new();
+    for (k, [x, width]) in spans.into_iter().enumerate() {
+        for (i, [y, height]) in spans.into_iter().enumerate() {
+            let [min_depth, max_depth] = depths[(k + i) % depths.len()];
+            viewports.push(Viewport {
+                x,
+                y,
+                width,
+                height,
+                min_depth,
+                max_depth,
+            });
+        }
+    }
+    let seeds = 0..viewports.len() as u64 * 8;
+    let of = |seed: u64| in_viewport(seed, viewports[seed as usize % viewports.len()]);
+    let failures: Vec<_> = parallel::map(seeds, of)
+        .into_iter()
+        .filter_map(Result::err)
+        .collect();
+    assert!(failures.is_empty(), "{failures:#?}");
 }

@@ -6,7 +6,7 @@ use gnomon_raster::{GpuConfig, MAX_THREADS, SimdLevel};
 /// How to execute; none of it changes a bit of the result.
 #[derive(Debug, Args)]
 pub(crate) struct GpuArgs {
-    /// Worker threads, 0 for one per core
+    /// Most worker threads, 0 for RAYON_NUM_THREADS or one per core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_threads)]
     pub(crate) threads: usize,
     /// Side of execution tiles in pixels: 16, 32, 64 or 128
@@ -21,10 +21,18 @@ pub(crate) struct GpuArgs {
 }
 
 impl GpuArgs {
+    /// As given, or as many as the threads that the program has started with.
+    fn threads(&self) -> usize {
+        match self.threads {
+            0 => rayon::current_num_threads().min(MAX_THREADS),
+            n => n,
+        }
+    }
+
     /// The GPU's own form.
     pub(crate) fn config(&self) -> GpuConfig {
         GpuConfig {
-            threads: self.threads,
+            threads: self.threads(),
             tile: self.tile,
             simd: self.simd,
             skip: !self.no_skip,

@@ -4,7 +4,23 @@ use image::ExtendedColorType::Rgba8;
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 
+use gnomon_pipeline::measure::render::RenderError;
+use gnomon_raster::memory;
+
 use crate::draw::Picture;
+
+/// Bytes that a pixel takes in a picture, its filtered rows, and the file.
+const ROOM: usize = 16;
+
+/// Whether there is memory to draw and encode a picture of `size` pixels.
+///
+/// # Errors
+/// There is not.
+pub(crate) fn check_room(size: [u32; 2]) -> Result<(), RenderError> {
+    let [w, h] = size.map(|s| s as usize);
+    let what = || format!("drawing a picture of {w}x{h} pixels");
+    Ok(memory::reserve(&mut Vec::<u8>::new(), w * h * ROOM, what)?)
+}
 
 /// The picture as a PNG file.
 pub(crate) fn encode(picture: &Picture) -> Vec<u8> {
@@ -21,6 +37,13 @@ pub(crate) fn encode(picture: &Picture) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_picture_that_memory_cannot_hold_is_an_error() {
+        check_room([8192, 8192]).expect("a gigabyte of addresses");
+        let error = check_room([u32::MAX, 1 << 27]).unwrap_err().to_string();
+        assert!(error.contains("4294967295x134217728"), "{error}");
+    }
 
     #[test]
     fn pictures_survive() {

@@ -52,6 +52,38 @@ fn unknown_names_get_suggestions() {
 }
 
 #[test]
+fn the_environments_threads_are_limited() {
+    let folder = Folder::new("environment-threads");
+    for threads in ["100000", "1025"] {
+        folder
+            .gnomon_with(
+                "render demo --size 64x48",
+                &[("RAYON_NUM_THREADS", threads)],
+            )
+            .refused(&["RAYON_NUM_THREADS", threads, "1024"]);
+    }
+    assert!(folder.names().is_empty());
+    let run = folder.gnomon_with(
+        "render demo --size 64x48 --json",
+        &[("RAYON_NUM_THREADS", "3")],
+    );
+    assert_eq!(run.fine().json()["threads"], 3);
+}
+
+/// The colour attachment does not fit, or the depth beside it.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_that_is_short_is_an_error() {
+    let folder = Folder::new("memory");
+    for kib in [300_000, 700_000] {
+        folder
+            .gnomon_within("render demo --size 8192x8192 --threads 1", kib)
+            .refused(&["bytes, which the system does not give", "8192"]);
+    }
+    assert!(folder.names().is_empty());
+}
+
+#[test]
 fn sizes_and_execution_settings_are_checked() {
     let folder = Folder::new("settings");
     for size in [

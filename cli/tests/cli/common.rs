@@ -38,11 +38,28 @@ impl Folder {
 
     /// Runs `gnomon` here; arguments are separated by blanks.
     pub(crate) fn gnomon(&self, arguments: &str) -> Run {
-        let output = Command::new(env!("CARGO_BIN_EXE_gnomon"))
-            .args(arguments.split_whitespace())
-            .current_dir(&self.0)
-            .output()
-            .unwrap();
+        self.gnomon_with(arguments, &[])
+    }
+
+    /// The same with environment variables.
+    pub(crate) fn gnomon_with(&self, arguments: &str, variables: &[(&str, &str)]) -> Run {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gnomon"));
+        command.args(arguments.split_whitespace());
+        self.run(command.envs(variables.iter().copied()), arguments)
+    }
+
+    /// The same with no more than `kib` KiB of addresses, as `ulimit -v` gives.
+    pub(crate) fn gnomon_within(&self, arguments: &str, kib: u32) -> Run {
+        let mut command = Command::new("sh");
+        let line = r#"ulimit -v "$1" && shift && exec "$@""#;
+        let limit = kib.to_string();
+        command.args(["-c", line, "sh", &limit, env!("CARGO_BIN_EXE_gnomon")]);
+        command.args(arguments.split_whitespace());
+        self.run(&mut command, arguments)
+    }
+
+    fn run(&self, command: &mut Command, arguments: &str) -> Run {
+        let output = command.current_dir(&self.0).output().unwrap();
         Run {
             arguments: arguments.to_owned(),
             output,

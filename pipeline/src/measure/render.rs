@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use gnomon_raster::texture::ColorTexel;
-use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource};
+use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource, memory};
 use thiserror::Error;
 
 use crate::technique::{
@@ -90,7 +90,14 @@ pub fn hash(size: [u32; 2], bytes: impl IntoIterator<Item = u8>) -> String {
     size.iter().for_each(|s| {
         hasher.update(&s.to_le_bytes());
     });
-    hasher.update(&bytes.into_iter().collect::<Vec<u8>>());
+    let mut bytes = bytes.into_iter();
+    loop {
+        let part: Vec<u8> = bytes.by_ref().take(1 << 16).collect();
+        if part.is_empty() {
+            break;
+        }
+        hasher.update(&part);
+    }
     hasher.finalize().to_hex().to_string()
 }
 
@@ -198,9 +205,9 @@ fn read_back(
     });
     Ok(Rendered {
         size,
-        srgb: color.iter().map(|t| encoder.encode(t.0)).collect(),
-        color: color.iter().map(|t| [t.0[0], t.0[1], t.0[2]]).collect(),
-        visibility: visibility(gpu, frame.outputs.visibility, &depth, &stencil)?,
+        srgb: pixels(color.iter().map(|t| encoder.encode(t.0)), size)?,
+        color: pixels(color.iter().map(|t| [t.0[0], t.0[1], t.0[2]]), size)?,
+        visibility: visibility(gpu, frame.outputs.visibility, size, &depth, &stencil)?,
         depth,
         stencil,
         frame_ms: median(times.frames),
@@ -216,14 +223,15 @@ fn read_back(
 fn visibility(
     gpu: &Gpu,
     output: VisibilityOutput,
+    size: [u32; 2],
     depth: &[f32],
     stencil: &[u8],
 ) -> Result<Vec<f32>, RenderError> {
     let values: Vec<f32> = match output {
-        VisibilityOutput::Full => vec![1.0; depth.len()],
+        VisibilityOutput::Full => pixels(depth.iter().map(|_| 1.0), size)?,
         VisibilityOutput::StencilZero => {
             let lit = |s: &u8| if *s == 0 { 1.0 } else { 0.0 };
-            stencil.iter().map(lit).collect()
+            pixels(stencil.iter().map(lit), size)?
         }
         VisibilityOutput::Red {
             texture,
@@ -232,11 +240,18 @@ fn visibility(
         } => {
             let texels = gpu.texture(texture)?.read_color(Subresource::default())?;
             let value = |t: &ColorTexel| (t.0[0] * scale + offset).clamp(0.0, 1.0);
-            texels.iter().map(value).collect()
+            pixels(texels.iter().map(value), size)?
         }
     };
     let at = |(&depth, value)| if depth >= 1.0 { f32::NAN } else { value };
-    Ok(depth.iter().zip(values).map(at).collect())
+    pixels(depth.iter().zip(values).map(at), size)
+}
+
+/// A value for each pixel, unless memory is short.
+fn pixels<T>(values: impl Iterator<Item = T>, [w, h]: [u32; 2]) -> Result<Vec<T>, RenderError> {
+    let n = w as usize * h as usize;
+    let what = || format!("a picture of {w}x{h} pixels");
+    Ok(memory::collected(values, n, what)?)
 }
 
 /// Events that changed the picture without stopping it.

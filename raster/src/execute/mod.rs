@@ -7,6 +7,9 @@ mod split;
 mod tiles;
 mod unit;
 mod validate;
+mod workers;
+
+pub use workers::worker_threads;
 
 use std::time::Instant;
 
@@ -26,13 +29,16 @@ pub(crate) fn submit(
     list.passes
         .iter()
         .try_for_each(|p| validate::render_pass(gpu, p))?;
+    workers::ensure(gpu, list)?;
     // One visit to the pool for all passes.
     let Some(pool) = gpu.pool.take() else {
-        return Ok(passes(gpu, list, observer));
+        gpu.parallel = false;
+        return passes(gpu, list, observer);
     };
+    gpu.parallel = true;
     let report = pool.install(|| passes(gpu, list, observer));
     gpu.pool = Some(pool);
-    Ok(report)
+    report
 }
 
 /// Executes validated passes in order.
@@ -40,32 +46,21 @@ fn passes(
     gpu: &mut Gpu,
     list: &CommandList,
     mut observer: Option<(Wants, &mut dyn AccessObserver)>,
-) -> SubmitReport {
+) -> Result<SubmitReport, Error> {
     let mut report = SubmitReport::default();
     for (number, pass) in list.passes.iter().enumerate() {
         let start = Instant::now();
         let listener = observer
             .as_mut()
             .map(|(wants, observer)| Listener::new(*wants, &mut **observer, number));
-        let mut done = pass::execute(gpu, pass, listener);
+        let mut done = pass::execute(gpu, pass, listener)?;
         done.time = start.elapsed();
         if let Some((_, observer)) = &mut observer {
             observer.end(number, &done);
         }
         report.passes.push(done);
     }
-    report
-}
-
-/// A pool of `n` workers; 0 for one per core.
-pub(crate) fn start_pool(n: usize) -> Result<rayon::ThreadPool, Error> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(n)
-        .build()
-        .map_err(|e| Error::Threads {
-            given: n,
-            reason: e.to_string(),
-        })
+    Ok(report)
 }
 
 /// Whether this thread's floating-point unit replaces denormals by zero.

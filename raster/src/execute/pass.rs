@@ -9,6 +9,7 @@ use super::tiles::TileStage;
 use super::unit::{Job, Unit, batches, units, vertex_traffic};
 use crate::command::{Draw, RenderPass};
 use crate::counters::Counters;
+use crate::error::Error;
 use crate::geometry::{Chunk, ChunkInput, ShadedVertices, TileGrid, process_chunk, shade_part};
 use crate::gpu::{DrawReport, Gpu, PassReport, Recycled};
 use crate::observer::Wants;
@@ -27,12 +28,18 @@ const SHARED_BATCH: u32 = 2 * BATCH;
 /// The same while somebody listens, whose accesses wait in memory too.
 const LISTENING_BATCH: u32 = 2 * CHUNK;
 
+/// Into how many chunks a draw is cut.
+pub(super) fn chunks_of(d: &Draw) -> usize {
+    let primitives = d.count / d.pipeline.primitive.topology.vertices();
+    primitives.div_ceil(CHUNK) as usize * d.instances as usize
+}
+
 /// Executes a validated pass; a listener is told of its accesses.
 pub(super) fn execute(
     gpu: &mut Gpu,
     pass: &RenderPass,
     listener: Option<Listener<'_>>,
-) -> PassReport {
+) -> Result<PassReport, Error> {
     let mut lent = split::lend(gpu, pass);
     let mut recycled = core::mem::take(&mut gpu.recycled);
     let wants = listener.as_ref().map(|l| l.wants).unwrap_or_default();
@@ -41,13 +48,13 @@ pub(super) fn execute(
     gpu.recycled = recycled;
     let clear = lent.clear_traffic();
     split::give_back(gpu, lent);
-    let draws = pass.draws.iter().zip(counters);
-    PassReport {
+    let draws = pass.draws.iter().zip(counters?);
+    Ok(PassReport {
         label: pass.label.clone(),
         draws: draws.map(|(d, c)| draw_report(d, c)).collect(),
         clear,
         time: std::time::Duration::ZERO,
-    }
+    })
 }
 
 fn draw_report(draw: &Draw, counters: Counters) -> DrawReport {
@@ -90,20 +97,24 @@ impl<'a> Executor<'a> {
             ),
             prepared: draws.map(|d| prepare(gpu, &target, d, wants)).collect(),
             recycled,
-            parallel: gpu.config.threads != 1,
+            parallel: gpu.parallel,
         }
     }
 
     /// Batch after batch: its vertices, its chunks, all tiles.
-    fn run(mut self, lent: &mut Lent, mut listener: Option<Listener<'_>>) -> Vec<Counters> {
-        let units = units(&self.prepared);
+    fn run(
+        mut self,
+        lent: &mut Lent,
+        mut listener: Option<Listener<'_>>,
+    ) -> Result<Vec<Counters>, Error> {
+        let units = units(&self.prepared)?;
         let mut counters = self.vertex_counters(&units);
         let batches = self.batches(&units, listener.is_some());
         let mut vertices = Vertices::new(units.len());
         let mut stage = TileStage::new(self.gpu, self.grid, self.prepared.len(), lent);
         for (number, jobs) in batches.iter().enumerate() {
             let is_last = number + 1 == batches.len();
-            self.shade_for(&units, jobs, &mut vertices);
+            self.shade_for(&units, jobs, &mut vertices)?;
             let chunks = self.chunks(&units, jobs, &vertices.shaded);
             for (job, chunk) in jobs.iter().zip(&chunks) {
                 counters[units[job.unit].draw].add(&Counters {
@@ -136,7 +147,7 @@ impl<'a> Executor<'a> {
         for (c, p) in counters.iter_mut().zip(&self.prepared) {
             c.settle(&p.sizes);
         }
-        counters
+        Ok(counters)
     }
 
     /// Vertex and index traffic of each draw.
@@ -163,25 +174,30 @@ impl<'a> Executor<'a> {
     }
 
     /// Shades the vertices of the units up to the last of `jobs`.
-    fn shade_for(&mut self, units: &[Unit<'_>], jobs: &[Job], vertices: &mut Vertices) {
+    fn shade_for(
+        &mut self,
+        units: &[Unit<'_>],
+        jobs: &[Job],
+        vertices: &mut Vertices,
+    ) -> Result<(), Error> {
         let end = jobs.last().map_or(0, |j| j.unit + 1);
         let start = vertices.ready;
         if start < end {
             vertices.ready = end;
-            self.shade(&units[start..end], &mut vertices.shaded[start..end]);
+            self.shade(&units[start..end], &mut vertices.shaded[start..end])?;
         }
+        Ok(())
     }
 
     /// Shades the vertices of `units`, in recycled memory.
-    fn shade(&mut self, units: &[Unit<'_>], shaded: &mut [ShadedVertices]) {
+    fn shade(&mut self, units: &[Unit<'_>], shaded: &mut [ShadedVertices]) -> Result<(), Error> {
         let mut work = Vec::new();
         for (unit, out) in units.iter().zip(shaded) {
             *out = self.recycled.shaded.pop().unwrap_or_default();
             out.clear();
-            out.resize(
-                unit.referenced.vertices.len(),
-                self.prepared[unit.draw].geometry.varyings,
-            );
+            let p = &self.prepared[unit.draw];
+            let vertices = unit.referenced.vertices.len();
+            out.resize(vertices, p.geometry.varyings, &p.draw.label)?;
             let runs = unit.referenced.vertices.chunks(VERTEX_RUN);
             let parts = out.parts(VERTEX_RUN).into_iter().zip(runs);
             work.extend(parts.map(|(part, run)| (unit, part, run)));
@@ -203,6 +219,7 @@ impl<'a> Executor<'a> {
         } else {
             work.into_iter().for_each(shade);
         }
+        Ok(())
     }
 
     fn chunks(

@@ -76,7 +76,7 @@ impl<'a> TileStage<'a> {
             stores: lent.stores(),
             tiles: lent.tiles(gpu.config.tile),
             draws,
-            parallel: gpu.config.threads != 1,
+            parallel: gpu.parallel,
             desks: Desks::default(),
         }
     }

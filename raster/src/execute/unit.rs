@@ -5,6 +5,8 @@ use std::borrow::Cow;
 use super::prepare::Prepared;
 use crate::command::{Draw, Referenced};
 use crate::counters::{Counters, Traffic};
+use crate::error::Error;
+use crate::memory::collected;
 
 /// Vertices of one instance of a draw.
 pub(super) struct Unit<'a> {
@@ -26,7 +28,7 @@ pub(super) struct Job {
 }
 
 /// Units of all draws, in submission order.
-pub(super) fn units<'a>(prepared: &[Prepared<'a>]) -> Vec<Unit<'a>> {
+pub(super) fn units<'a>(prepared: &[Prepared<'a>]) -> Result<Vec<Unit<'a>>, Error> {
     let mut units = Vec::new();
     for (number, p) in prepared.iter().enumerate() {
         let d = p.draw;
@@ -38,13 +40,13 @@ pub(super) fn units<'a>(prepared: &[Prepared<'a>]) -> Vec<Unit<'a>> {
             units.push(Unit {
                 draw: number,
                 instance,
-                referenced: referenced(d, primitives),
+                referenced: referenced(d, primitives)?,
                 primitives,
                 first_primitive: instance * primitives,
             });
         }
     }
-    units
+    Ok(units)
 }
 
 /// Chunks of all units, in batches of `size` primitives; at least one batch, for the load
@@ -70,17 +72,18 @@ pub(super) fn batches(units: &[Unit<'_>], chunk: u32, size: u32) -> Vec<Vec<Job>
     batches
 }
 
-fn referenced(d: &Draw, primitives: u32) -> Cow<'_, Referenced> {
+fn referenced(d: &Draw, primitives: u32) -> Result<Cow<'_, Referenced>, Error> {
     let used = (primitives * d.pipeline.primitive.topology.vertices()) as usize;
     let first = d.first as usize;
-    match &d.indices {
+    let numbers = || format!("draw `{}`: its list of {used} vertices", d.label);
+    Ok(match &d.indices {
         None => Cow::Owned(Referenced {
-            vertices: (d.first..d.first + used as u32).collect(),
+            vertices: collected(d.first..d.first + used as u32, used, numbers)?,
             local: Vec::new(),
         }),
         Some(b) if first == 0 && used == b.indices().len() => Cow::Borrowed(b.referenced()),
         Some(b) => Cow::Owned(Referenced::of(&b.indices()[first..first + used])),
-    }
+    })
 }
 
 /// Vertex and index traffic of draw number `number` (rules §8).

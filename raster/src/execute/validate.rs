@@ -10,7 +10,7 @@ use crate::state::{BlendFactor, BlendState, DepthStencilState, ScissorRect, View
 use crate::texture::{Texture, TextureId};
 use crate::{
     MAX_CLIP_PLANES, MAX_COLOR_ATTACHMENTS, MAX_DRAW_VERTICES, MAX_INSTANCES, MAX_SHADER_COUNTS,
-    MAX_TEXTURES, MAX_VARYINGS,
+    MAX_TEXTURES, MAX_VARYINGS, MIN_VIEWPORT_SIDE,
 };
 
 /// Widest line and largest point, in pixels.
@@ -204,14 +204,15 @@ fn primitive_state(d: &Draw) -> Result<(), Error> {
 }
 
 fn viewport(d: &Draw, v: &Viewport) -> Result<(), Error> {
-    let inside = |at: f32, size: f32| at >= GUARD_MIN && size > 0.0 && at + size <= GUARD_MAX;
+    let inside =
+        |at: f32, size: f32| at >= GUARD_MIN && size >= MIN_VIEWPORT_SIDE && at + size <= GUARD_MAX;
     let ok = inside(v.x, v.width) && inside(v.y, v.height);
     range(
         d,
         "viewport",
         ok,
         format!("{v:?}"),
-        "sizes must be positive and edges within -4096..=12288 pixels",
+        "sizes must be at least 2⁻¹¹² (1.93e-34) and edges within -4096..=12288 pixels",
     )?;
     let unit = |z: f32| (0.0..=1.0).contains(&z);
     let ok = unit(v.min_depth) && unit(v.max_depth);

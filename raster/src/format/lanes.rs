@@ -34,12 +34,12 @@ pub(crate) fn half_from_float<L: Lanes>(v: F32<L>) -> U16<L> {
 #[inline(always)]
 fn half_by_arithmetic<L: Lanes>(v: F32<L>) -> U16<L> {
     let l = v.lanes();
-    let bits = v.to_bits().to_i32();
+    let bits = v.raw_bits().to_i32();
     let a = (bits & I32::splat(l, i32::MAX)).min(I32::splat(l, BEYOND));
     let power = a & I32::splat(l, 0xff << 23);
     let m = (power + I32::splat(l, 13 << 23)).max(I32::splat(l, LEAST_MAGIC));
     let sum = a.to_u32().to_f32_bits() + m.to_u32().to_f32_bits();
-    let r = sum.to_bits().to_i32();
+    let r = sum.raw_bits().to_i32();
     let half = (r - m) + ((m - I32::splat(l, LEAST_MAGIC)) >> 13);
     let sign = (bits >> 16) & I32::splat(l, -0x8000);
     v.eq(v).select_i32(half | sign, I32::splat(l, NAN)).narrow()
@@ -72,7 +72,7 @@ fn float_by_arithmetic<L: Lanes>(h: U32<L>) -> F32<L> {
     let infinity = U32::splat(l, SHIFTED_INFINITY);
     let special = (shifted & infinity).eq(infinity);
     let exponent = special.select_u32(U32::splat(l, 0xff << 23), U32::splat(l, 0));
-    (scaled.to_bits() | exponent).to_f32_bits()
+    (scaled.raw_bits() | exponent).to_f32_bits()
 }
 
 /// Bytes of floats in 0..=1, as [`super::unorm8_from_f32`] has them; other lanes
@@ -80,7 +80,7 @@ fn float_by_arithmetic<L: Lanes>(h: U32<L>) -> F32<L> {
 #[inline(always)]
 pub(crate) fn unorm8_from_unit<L: Lanes>(v: F32<L>) -> I32<L> {
     // Adding 2²³ rounds a float below 2²² to an integer, ties to even.
-    (v * 255.0 + 8_388_608.0).to_bits().to_i32() & I32::splat(v.lanes(), 0xff)
+    (v * 255.0 + 8_388_608.0).raw_bits().to_i32() & I32::splat(v.lanes(), 0xff)
 }
 
 /// Rounded to the nearest integer, ties to even, and limited, as

@@ -467,8 +467,8 @@ impl<L: Lanes> DepthPlanes<L> {
                 ]
             }
             DepthEncoding::Float => [
-                zx.to_f32().to_bits().to_i32(),
-                zy.to_f32().to_bits().to_i32(),
+                zx.to_f32().raw_bits().to_i32(),
+                zy.to_f32().raw_bits().to_i32(),
             ],
         };
         let b = state.bias;
@@ -651,9 +651,9 @@ impl<L: Lanes> Table<'_, L> {
             zx.1,
             zy.0,
             zy.1,
-            q.x[0].to_bits(),
-            q.y[0].to_bits(),
-            q.z[0].to_bits(),
+            q.x[0].raw_bits(),
+            q.y[0].raw_bits(),
+            q.z[0].raw_bits(),
             d.slope[0].to_u32(),
             d.slope[1].to_u32(),
             U32::from_array(l, &packet.primitive),

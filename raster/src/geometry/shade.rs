@@ -1,6 +1,8 @@
 //! Vertex shading and projection, 16 vertices at a time.
 
 use super::{GeometryState, clip};
+use crate::error::Error;
+use crate::memory::reserve;
 use crate::shader::{ErasedVertexShader, VertexBatch, VertexOutput};
 use crate::simd::{F32, F64, LANES, Lanes, SimdLevel, each4, with_lanes};
 
@@ -58,15 +60,18 @@ impl ShadedVertices {
         self.padded = 0;
     }
 
-    /// Room for `n` vertices, rounded up to whole packets.
-    pub(crate) fn resize(&mut self, n: usize, varyings: usize) {
-        self.padded = n.next_multiple_of(LANES);
-        self.clip
-            .iter_mut()
-            .for_each(|c| c.resize(self.padded, 0.0));
-        self.varyings.resize(self.padded * varyings, 0.0);
-        self.screen.resize(self.padded, ScreenVertex::default());
-        self.codes.resize(self.padded, 0);
+    /// Room for `n` vertices of draw `draw`, rounded up to whole packets.
+    pub(crate) fn resize(&mut self, n: usize, varyings: usize, draw: &str) -> Result<(), Error> {
+        let padded = n.next_multiple_of(LANES);
+        let what = || format!("draw `{draw}`: its {n} shaded vertices");
+        for c in &mut self.clip {
+            resize(c, padded, 0.0, what)?;
+        }
+        resize(&mut self.varyings, padded * varyings, 0.0, what)?;
+        resize(&mut self.screen, padded, ScreenVertex::default(), what)?;
+        resize(&mut self.codes, padded, 0, what)?;
+        self.padded = padded;
+        Ok(())
     }
 
     /// Appends a vertex that clipping or widening made.
@@ -84,6 +89,17 @@ impl ShadedVertices {
         self.screen.push(screen);
         self.screen.len() as u32 - 1
     }
+}
+
+fn resize<T: Clone>(
+    v: &mut Vec<T>,
+    n: usize,
+    value: T,
+    what: impl FnOnce() -> String,
+) -> Result<(), Error> {
+    reserve(v, n.saturating_sub(v.len()), what)?;
+    v.resize(n, value);
+    Ok(())
 }
 
 /// A run of vertices of a [`ShadedVertices`], for one worker to fill.

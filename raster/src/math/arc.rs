@@ -21,7 +21,7 @@ const PI: [f32; 2] = [core::f32::consts::PI, -8.742_278e-8];
 const TWO_126: f32 = f32::from_bits(253 << 23);
 
 /// atan(b/a) for 0 ≤ b ≤ a; 0/0 counts as 0, ∞/∞ as 1.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn first_octant<R: Real>(b: R, a: R) -> R {
     let (zero, one) = (a.lit(0.0), a.lit(1.0));
     let none = a.eq(zero);
@@ -38,14 +38,14 @@ fn first_octant<R: Real>(b: R, a: R) -> R {
 }
 
 /// `c − a` with c in two words.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn less<R: Real>(c: [f32; 2], a: R) -> R {
     (a.lit(c[0]) - a) + c[1]
 }
 
 /// Angle of the point (x, y) in −π..=π, with the signs and special cases of
 /// IEEE 754.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn atan2<R: Real>(y: R, x: R) -> R {
     let (ay, ax) = (y.abs(), x.abs());
@@ -57,27 +57,27 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
 }
 
 /// Arc tangent in −π/2..=π/2.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn atan<R: Real>(x: R) -> R {
     atan2(x, x.lit(1.0))
 }
 
 /// √(1 − x²), as a product that keeps its accuracy near ±1.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn other_leg<R: Real>(x: R) -> R {
     ((-x + 1.0) * (x + 1.0)).sqrt()
 }
 
 /// Arc sine in −π/2..=π/2; NaN outside −1..=1.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn asin<R: Real>(x: R) -> R {
     atan2(x, other_leg(x))
 }
 
 /// Arc cosine in 0..=π; NaN outside −1..=1.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn acos<R: Real>(x: R) -> R {
     atan2(other_leg(x), x)

@@ -30,14 +30,14 @@ const EXP: [f32; 5] = [
 ];
 
 /// `p·2^k` for an integer −151 ≤ k ≤ 129, the last product rounded.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 pub(super) fn scale<R: Real>(p: R, k: R) -> R {
     let half = (k * 0.5).floor();
     (p * R::pow2(half)) * R::pow2(k - half)
 }
 
 /// 2^f, |f| ≤ ½ (a little more does no harm).
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 pub(super) fn exp2_near<R: Real>(f: R) -> R {
     let [a, b, c, d, e, g] = EXP2;
     let p = (((f * g + e) * f + d) * f + c) * f + b;
@@ -49,7 +49,7 @@ pub(super) fn exp2_near<R: Real>(f: R) -> R {
 }
 
 /// 2^x, exact for integers.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn exp2<R: Real>(x: R) -> R {
     let t = x.limit(-151.0, 129.0);
@@ -59,7 +59,7 @@ pub fn exp2<R: Real>(x: R) -> R {
 }
 
 /// e^x.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn exp<R: Real>(x: R) -> R {
     let t = x.limit(-104.5, 89.25);

@@ -14,7 +14,7 @@ const LOG2_E: [f32; 2] = [1.442_871_1, -0.000_176_052_85];
 const TWO_25: f32 = 33_554_432.0;
 
 /// `x = m·2^k` with √½ ≤ m < √2, for any positive finite x.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 pub(super) fn split_any<R: Real>(x: R) -> (R, R) {
     let small = x.lt(x.lit(f32::MIN_POSITIVE));
     let (m, k) = R::pick(small, x * TWO_25, x).split();
@@ -22,7 +22,7 @@ pub(super) fn split_any<R: Real>(x: R) -> (R, R) {
 }
 
 /// f, f²/2 and s·(f²/2 + R) of m = 1 + f; ln m = f − f²/2 + the last.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn parts<R: Real>(m: R) -> [R; 3] {
     let f = m - 1.0;
     let s = f / (f + 2.0);
@@ -33,7 +33,7 @@ fn parts<R: Real>(m: R) -> [R; 3] {
 }
 
 /// The logarithm's value at 0, ∞, below 0 and NaN; `y` elsewhere.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn ends<R: Real>(x: R, y: R) -> R {
     let zero = x.lit(0.0);
     let infinite = x.lit(f32::INFINITY);
@@ -43,7 +43,7 @@ fn ends<R: Real>(x: R, y: R) -> R {
 }
 
 /// Binary logarithm, exact for powers of two: −∞ at ±0, NaN below.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn log2<R: Real>(x: R) -> R {
     let (m, k) = split_any(x);
@@ -55,7 +55,7 @@ pub fn log2<R: Real>(x: R) -> R {
 }
 
 /// Natural logarithm: −∞ at ±0, NaN below.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn ln<R: Real>(x: R) -> R {
     let (m, k) = split_any(x);

@@ -18,7 +18,7 @@ const TWO_THIRDS_LOG2_E_PARTS: [f32; 2] = [0.961_914_06, -0.000_117_368_574];
 const EXPONENT_LIMIT: f32 = 1_152_921_504_606_846_976.0;
 
 /// log₂ of a positive finite x, as a head of 12 bits and a rest.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn log2_in_two<R: Real>(x: R) -> [R; 2] {
     let (m, k) = split_any(x);
     // s = (m − 1)/(m + 1) = s_h + s_l.
@@ -48,7 +48,7 @@ fn log2_in_two<R: Real>(x: R) -> [R; 2] {
 }
 
 /// 2^(y·(head + rest)).
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn raise<R: Real>(y: R, [head, rest]: [R; 2]) -> R {
     let y_h = y.head();
     let high = y_h * head;
@@ -62,7 +62,7 @@ fn raise<R: Real>(y: R, [head, rest]: [R; 2]) -> R {
 
 /// x^y for x ≥ 0, where −0 counts as 0; NaN for x < 0. As in IEEE 754, 1 where
 /// y = 0 or x = 1, whatever the other is.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn pow<R: Real>(x: R, y: R) -> R {
     let (zero, one, infinite) = (x.lit(0.0), x.lit(1.0), x.lit(f32::INFINITY));

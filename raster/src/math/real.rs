@@ -42,11 +42,11 @@ pub trait Real:
     fn lt(self, o: Self) -> Self::Test;
     /// `self == o`.
     fn eq(self, o: Self) -> Self::Test;
-    /// Whether the sign bit is set.
+    /// Whether the sign bit is set; of a NaN it may be on one machine and not on another.
     fn negative(self) -> Self::Test;
     /// `if test { yes } else { no }`.
     fn pick(test: Self::Test, yes: Self, no: Self) -> Self;
-    /// `self` with its sign flipped where `of` has the sign bit set.
+    /// `self` with its sign flipped where `of` has the sign bit set; `of` is no NaN.
     fn flip_by(self, of: Self) -> Self;
     /// The leading 12 significant bits; the rest cut off.
     fn head(self) -> Self;
@@ -58,13 +58,13 @@ pub trait Real:
     fn patch(self, test: Self::Test, values: [Self; 3], f: fn(f32) -> [f32; 3]) -> [Self; 3];
 
     /// `self > o`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn gt(self, o: Self) -> Self::Test {
         o.lt(self)
     }
 
     /// `if lo < self { self } else { lo }`, then `if it < hi { it } else { hi }`; NaN becomes `lo`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn limit(self, lo: f32, hi: f32) -> Self {
         let (lo, hi) = (self.lit(lo), self.lit(hi));
         let raised = Self::pick(self.gt(lo), self, lo);
@@ -72,7 +72,7 @@ pub trait Real:
     }
 
     /// Every NaN replaced by 0x7fc0_0000.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn one_nan(self) -> Self {
         Self::pick(self.eq(self), self, self.lit(NAN))
     }
@@ -97,74 +97,74 @@ const MANTISSA: i32 = 0x007f_ffff;
 impl Real for f32 {
     type Test = bool;
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn lit(self, x: f32) -> f32 {
         x
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn abs(self) -> f32 {
         f32::abs(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn sqrt(self) -> f32 {
         f32::sqrt(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn floor(self) -> f32 {
         f32::floor(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn rint(self) -> f32 {
         f32::round_ties_even(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn lt(self, o: f32) -> bool {
         self < o
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn eq(self, o: f32) -> bool {
         self == o
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn negative(self) -> bool {
         self.is_sign_negative()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn pick(test: bool, yes: f32, no: f32) -> f32 {
         if test { yes } else { no }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn flip_by(self, of: f32) -> f32 {
         f32::from_bits(self.to_bits() ^ (of.to_bits() & SIGN))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn head(self) -> f32 {
         f32::from_bits(self.to_bits() & HEAD)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn pow2(k: f32) -> f32 {
         f32::from_bits((((k + 127.0) as i32) << 23) as u32)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn split(self) -> (f32, f32) {
         let i = (self.to_bits() as i32).wrapping_add(ONE - SQRT_HALF);
         let m = (i & MANTISSA) + SQRT_HALF;
         (f32::from_bits(m as u32), ((i >> 23) - 127) as f32)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn patch(self, test: bool, values: [f32; 3], f: fn(f32) -> [f32; 3]) -> [f32; 3] {
         if test { f(self) } else { values }
     }
@@ -173,72 +173,72 @@ impl Real for f32 {
 impl<L: Lanes> Real for F32<L> {
     type Test = Mask<L>;
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn lit(self, x: f32) -> Self {
         Self::splat(self.lanes(), x)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn abs(self) -> Self {
         F32::abs(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn sqrt(self) -> Self {
         F32::sqrt(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn floor(self) -> Self {
         F32::floor(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn rint(self) -> Self {
         F32::round_ties_even(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn lt(self, o: Self) -> Mask<L> {
         F32::lt(self, o)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn eq(self, o: Self) -> Mask<L> {
         F32::eq(self, o)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn negative(self) -> Mask<L> {
-        self.to_bits().to_i32().lt(I32::splat(self.lanes(), 0))
+        self.raw_bits().to_i32().lt(I32::splat(self.lanes(), 0))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn pick(test: Mask<L>, yes: Self, no: Self) -> Self {
         test.select_f32(yes, no)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn flip_by(self, of: Self) -> Self {
         let sign = I32::splat(self.lanes(), SIGN as i32).to_u32();
-        (self.to_bits() ^ (of.to_bits() & sign)).to_f32_bits()
+        (self.raw_bits() ^ (of.raw_bits() & sign)).to_f32_bits()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn head(self) -> Self {
         let mask = I32::splat(self.lanes(), HEAD as i32).to_u32();
-        (self.to_bits() & mask).to_f32_bits()
+        (self.raw_bits() & mask).to_f32_bits()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn pow2(k: Self) -> Self {
         ((k + 127.0).to_i32() << 23).to_u32().to_f32_bits()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn split(self) -> (Self, Self) {
         let l = self.lanes();
-        let i = self.to_bits().to_i32() + I32::splat(l, ONE - SQRT_HALF);
+        let i = self.raw_bits().to_i32() + I32::splat(l, ONE - SQRT_HALF);
         let m = (i & I32::splat(l, MANTISSA)) + I32::splat(l, SQRT_HALF);
         (
             m.to_u32().to_f32_bits(),
@@ -246,7 +246,7 @@ impl<L: Lanes> Real for F32<L> {
         )
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn patch(self, test: Mask<L>, values: [Self; 3], f: fn(f32) -> [f32; 3]) -> [Self; 3] {
         if test.any() {
             patch_lanes(self, test.bits(), values, f)

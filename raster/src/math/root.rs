@@ -3,7 +3,7 @@
 use super::real::Real;
 
 /// 1/√x, two correctly rounded operations: ±∞ at ±0, NaN below.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn rsqrt<R: Real>(x: R) -> R {
     (x.lit(1.0) / x.sqrt()).one_nan()

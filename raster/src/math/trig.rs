@@ -35,7 +35,7 @@ struct Reduced<R> {
 }
 
 /// `a − b` and what the rounding lost (Knuth's two-sum).
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn exact_difference<R: Real>(a: R, b: R) -> (R, R) {
     let d = a - b;
     let bb = a - d;
@@ -43,7 +43,7 @@ fn exact_difference<R: Real>(a: R, b: R) -> (R, R) {
     (d, (a - aa) - (b - bb))
 }
 
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn reduce<R: Real>(x: R) -> Reduced<R> {
     let k = (x * TWO_OVER_PI).rint();
     let d = (x - k * PI_2[0]) - k * PI_2[1];
@@ -101,14 +101,14 @@ fn reduce_far(x: f32) -> [f32; 3] {
     [quadrant, high, (r - f64::from(high)) as f32]
 }
 
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn sin_near<R: Real>(r: R, low: R) -> R {
     let z = r * r;
     let p = ((z * SIN[2] + SIN[1]) * z + SIN[0]) * z;
     r + (p * r + low * (-(z * 0.5) + 1.0))
 }
 
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn cos_near<R: Real>(r: R, low: R) -> R {
     let z = r * r;
     let half = z * 0.5;
@@ -118,13 +118,13 @@ fn cos_near<R: Real>(r: R, low: R) -> R {
     w + (((one - w) - half) + (p - r * low))
 }
 
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn is<R: Real>(quadrant: R, q: f32) -> R::Test {
     quadrant.eq(quadrant.lit(q))
 }
 
 /// [`sin`] and [`cos`] of x, for the price of one.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn sin_cos<R: Real>(x: R) -> [R; 2] {
     let Reduced { quadrant, r, low } = reduce(x.abs());
@@ -138,21 +138,21 @@ pub fn sin_cos<R: Real>(x: R) -> [R; 2] {
 }
 
 /// Sine of x radians, for every finite x; NaN for ±∞.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn sin<R: Real>(x: R) -> R {
     sin_cos(x)[0]
 }
 
 /// Cosine of x radians, for every finite x; NaN for ±∞.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn cos<R: Real>(x: R) -> R {
     sin_cos(x)[1]
 }
 
 /// Tangent of x radians, the quotient of [`sin`] and [`cos`].
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn tan<R: Real>(x: R) -> R {
     let [s, c] = sin_cos(x);

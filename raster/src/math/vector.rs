@@ -4,28 +4,28 @@
 use super::real::Real;
 
 /// `a·b`.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn dot2<R: Real>(a: [R; 2], b: [R; 2]) -> R {
     a[0] * b[0] + a[1] * b[1]
 }
 
 /// `a·b`.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn dot3<R: Real>(a: [R; 3], b: [R; 3]) -> R {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
 /// `a·b`.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn dot4<R: Real>(a: [R; 4], b: [R; 4]) -> R {
     ((a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]) + a[3] * b[3]
 }
 
 /// Cross product.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [
@@ -36,14 +36,14 @@ pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
 }
 
 /// √(a·a).
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn length<R: Real>(a: [R; 3]) -> R {
     dot3(a, a).sqrt()
 }
 
 /// Each component times 1/√(a·a); zero where a·a is not positive.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn normalize<R: Real>(a: [R; 3]) -> [R; 3] {
     let square = dot3(a, a);
@@ -53,7 +53,7 @@ pub fn normalize<R: Real>(a: [R; 3]) -> [R; 3] {
 }
 
 /// `i − 2·(n·i)·n`.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn reflect<R: Real>(i: [R; 3], n: [R; 3]) -> [R; 3] {
     let twice = dot3(n, i) * 2.0;
@@ -65,21 +65,21 @@ pub fn reflect<R: Real>(i: [R; 3], n: [R; 3]) -> [R; 3] {
 }
 
 /// `a + t·(b − a)`.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn mix<R: Real>(a: R, b: R, t: R) -> R {
     a + t * (b - a)
 }
 
 /// To 0..=1; NaN becomes 0.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn saturate<R: Real>(x: R) -> R {
     x.limit(0.0, 1.0)
 }
 
 /// 0 below `from`, 1 above `to`, `t²·(3 − 2t)` between.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 #[must_use]
 pub fn smoothstep<R: Real>(from: R, to: R, x: R) -> R {
     let t = saturate((x - from) / (to - from));

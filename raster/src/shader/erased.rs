@@ -99,7 +99,7 @@ impl<F: FragmentShader + Uniforms + Named> ErasedFragmentShader for NamedShader<
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn shade_batch<L: Lanes, V: VertexShader>(
     shader: &V,
     l: L,
@@ -130,7 +130,7 @@ fn shade_batch<L: Lanes, V: VertexShader>(
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn shade_block<L: Lanes, F: FragmentShader>(shader: &F, l: L, block: &mut ShadeBlock<'_>) {
     let (attachments, writes_depth) = (block.attachments, block.writes_depth);
     for packet in 0..PACKETS {

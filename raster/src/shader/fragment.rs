@@ -61,6 +61,8 @@ pub(crate) struct PacketOutput {
     pub(crate) depth: [f32; LANES],
     /// Lanes that were discarded.
     pub(crate) discarded: u16,
+    /// Lanes whose colour is the bits of an integer, by attachment.
+    pub(crate) integers: [u16; MAX_COLOR_ATTACHMENTS],
 }
 
 impl PacketOutput {
@@ -68,6 +70,7 @@ impl PacketOutput {
         color: [[[0.0; LANES]; 4]; MAX_COLOR_ATTACHMENTS],
         depth: [0.0; LANES],
         discarded: 0,
+        integers: [0; MAX_COLOR_ATTACHMENTS],
     };
 }
 
@@ -135,7 +138,7 @@ const IY: [f32; LANES] = [
 ];
 
 impl<'a, L: Lanes> Fragment<'a, L> {
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(super) fn new(l: L, b: &'a mut ShadeBlock<'_>, packet: usize) -> Fragment<'a, L> {
         let live = (b.live >> (16 * packet)) as u16;
         let out = &mut b.out[packet];
@@ -163,7 +166,7 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     }
 
     /// `fl(fl(base + fl(gx·ix)) + fl(gy·iy))`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn plane(&self, i: usize) -> F32<L> {
         let row = F32::splat(self.l, (self.y % 8) as f32) + F32::from_array(self.l, &IY);
         let along = F32::from_array(self.l, &IX) * self.planes.gx[i];
@@ -172,13 +175,13 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     }
 
     /// The level's token.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn lanes(&self) -> L {
         self.l
     }
 
     /// Varying `i`, interpolated as the vertex shader declared; 0 beyond.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn varying(&self, i: usize) -> F32<L> {
         if i >= self.varyings {
             return F32::splat(self.l, 0.0);
@@ -192,55 +195,55 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     }
 
     /// Clip-space w of each fragment; 1 where no varying is interpolated with perspective.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn w(&self) -> F32<L> {
         self.w
     }
 
     /// Pixel centres, x to the right.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn x(&self) -> F32<L> {
         F32::from_array(self.l, &IX) + (self.x as f32 + 0.5)
     }
 
     /// Pixel centres, y downwards.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn y(&self) -> F32<L> {
         F32::from_array(self.l, &IY) + (self.y as f32 + 0.5)
     }
 
     /// Fragment depth in 0..=1.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn depth(&self) -> F32<L> {
         self.depth.packet(self.l, (self.y % 8 / 2) as usize)
     }
 
     /// Whether the primitive faces the viewer.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn front_facing(&self) -> bool {
         self.front_facing
     }
 
     /// Number of the primitive in its draw.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn primitive_index(&self) -> u32 {
         self.primitive
     }
 
     /// Lanes that are fragments; the others are helpers for derivatives.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn live(&self) -> Mask<L> {
         Mask::from_bits(self.l, self.live)
     }
 
     /// Lanes whose texture look-ups are counted: live and not discarded so far.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn counted_lanes(&self) -> u16 {
         self.live & !self.out.discarded
     }
 
     /// Outputs that the shader left alone are 0, whatever an earlier one computed.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(super) fn finish(&mut self, attachments: usize, depth: bool) {
         let zero = F32::splat(self.l, 0.0);
         for i in 0..attachments {
@@ -254,39 +257,45 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     }
 
     /// Sets all four channels of colour attachment `i`; those that are never set are 0.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn set_color(&mut self, i: usize, rgba: [F32<L>; 4]) {
         self.set |= 1 << (i & 15);
         if let Some(c) = self.out.color.get_mut(i) {
             for (slot, v) in c.iter_mut().zip(rgba) {
                 v.store(slot);
             }
+            self.out.integers[i] = 0;
         }
     }
 
-    /// Sets the value of an `R32Uint` colour attachment.
-    #[inline(always)]
+    /// Sets the value of an `R32Uint` colour attachment, to the bit.
+    /// ([`Fragment::set_color`] gives such an attachment the bits of the first channel,
+    /// of a NaN the canonical ones.)
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn set_color_uint(&mut self, i: usize, v: U32<L>) {
         let bits = v.to_f32_bits();
         self.set_color(i, [bits; 4]);
+        if let Some(lanes) = self.out.integers.get_mut(i) {
+            *lanes = u16::MAX;
+        }
     }
 
     /// Sets the depth; only where the shader declared it. It is 0 otherwise.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn set_depth(&mut self, depth: F32<L>) {
         self.set |= DEPTH_SET;
         depth.store(&mut self.out.depth);
     }
 
     /// Discards the lanes of the mask; only where the shader declared it.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn discard(&mut self, mask: Mask<L>) {
         self.out.discarded |= mask.bits();
     }
 
     /// Adds the fragments among `lanes` to the count number `i` of those declared;
     /// a count beyond [`MAX_SHADER_COUNTS`](crate::MAX_SHADER_COUNTS) is none.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn count(&mut self, i: usize, lanes: Mask<L>) {
         if COUNT && let Some(n) = self.events.counts.get_mut(i) {
             *n += u64::from((lanes.bits() & self.live).count_ones());
@@ -294,14 +303,14 @@ impl<'a, L: Lanes> Fragment<'a, L> {
     }
 
     /// Integer pixel column of each lane.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn column(&self) -> I32<L> {
         I32::splat(self.l, self.x as i32)
             + I32::from_array(self.l, &[0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7])
     }
 
     /// Integer pixel row of each lane.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn row(&self) -> I32<L> {
         I32::splat(self.l, self.y as i32)
             + I32::from_array(self.l, &[0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1])

@@ -48,8 +48,11 @@ pub struct ScalarFragment {
 /// What a fragment closure returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScalarFragmentOutput {
-    /// Colour attachments in order.
+    /// Colour attachments in order. An `R32Uint` one takes the bits of the first
+    /// channel, of a NaN the canonical ones; for integers see [`Self::set_uint`].
     pub color: [[f32; 4]; MAX_COLOR_ATTACHMENTS],
+    /// The bits of the attachment's first channel are an integer, not to be touched.
+    pub integer: [bool; MAX_COLOR_ATTACHMENTS],
     /// Depth, where declared.
     pub depth: f32,
     /// Throw the fragment away, where declared.
@@ -65,6 +68,14 @@ impl ScalarFragmentOutput {
         let mut o = Self::default();
         o.color[0] = rgba;
         o
+    }
+
+    /// Sets the value of the `R32Uint` attachment `i`; one beyond the last is ignored.
+    pub fn set_uint(&mut self, i: usize, value: u32) {
+        if let (Some(color), Some(integer)) = (self.color.get_mut(i), self.integer.get_mut(i)) {
+            *color = [f32::from_bits(value); 4];
+            *integer = true;
+        }
     }
 }
 
@@ -146,6 +157,7 @@ where
         let (depth, w) = (f.depth().to_array(), f.w().to_array());
         let (columns, rows) = (f.column().to_array(), f.row().to_array());
         let mut discarded = 0u16;
+        f.out.integers = [0; MAX_COLOR_ATTACHMENTS];
         let mut counted = [0u16; MAX_SHADER_COUNTS];
         for lane in (0..LANES)
             .filter(|lane| f.live().bits() >> lane & 1 != 0)
@@ -164,6 +176,9 @@ where
             discarded |= u16::from(out.discard) << lane;
             for (lanes, adds) in counted.iter_mut().zip(out.counted) {
                 *lanes |= u16::from(adds) << lane;
+            }
+            for (lanes, integer) in f.out.integers.iter_mut().zip(out.integer) {
+                *lanes |= u16::from(integer) << lane;
             }
             for (target, color) in f.out.color.iter_mut().zip(out.color) {
                 for (channel, c) in target.iter_mut().zip(color) {

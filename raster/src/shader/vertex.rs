@@ -47,7 +47,7 @@ pub struct Vertex<'a, L: Lanes> {
 
 impl<L: Lanes> Vertex<'_, L> {
     /// Float `offset` of each vertex's data; 0 beyond the vertex's stride.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn attribute(&self, offset: usize) -> F32<L> {
         let mut a = [0.0; LANES];
         if offset < self.batch.stride {
@@ -59,25 +59,25 @@ impl<L: Lanes> Vertex<'_, L> {
     }
 
     /// Vertex number of each lane.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn vertex_index(&self) -> [u32; LANES] {
         self.ids
     }
 
     /// Instance number.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn instance_index(&self) -> u32 {
         self.batch.instance
     }
 
     /// Sets the clip-space position (x, y, z, w); depth 0..w, y up.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn set_position(&mut self, position: [F32<L>; 4]) {
         self.position = position;
     }
 
     /// Sets varying `i`; one that was not declared is ignored.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn set_varying(&mut self, i: usize, v: F32<L>) {
         if let Some(slot) = self.varyings.get_mut(i) {
             v.store(slot);

@@ -13,7 +13,7 @@ use super::{F32, I32, LANES, Lanes, Mask, U32};
 pub(crate) const ROUND_MAGIC: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²
 
 /// Nearest integer, ties to even, of a double of magnitude below 2³¹.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 pub(crate) fn round_to_i32(v: f64) -> i32 {
     (v + ROUND_MAGIC).to_bits() as i32
 }
@@ -27,14 +27,14 @@ pub(crate) struct F64<L: Lanes> {
 }
 
 impl<L: Lanes> F64<L> {
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn splat(l: L, x: f64) -> Self {
         let v = f64x8::splat(l.isa(), x);
         Self { lo: v, hi: v, l }
     }
 
     /// Exact.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn from_f32(x: F32<L>) -> Self {
         x.l.op(
             #[inline(always)]
@@ -45,7 +45,7 @@ impl<L: Lanes> F64<L> {
         )
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn from_array(l: L, a: &[f64; LANES]) -> Self {
         Self {
             lo: f64x8::from_slice(l.isa(), &a[..8]),
@@ -54,7 +54,7 @@ impl<L: Lanes> F64<L> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn to_f32(self) -> F32<L> {
         self.l.op(
             #[inline(always)]
@@ -62,7 +62,7 @@ impl<L: Lanes> F64<L> {
         )
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn to_array(self) -> [f64; LANES] {
         let mut a = [0.0; LANES];
         self.lo.store_slice(&mut a[..8]);
@@ -71,7 +71,7 @@ impl<L: Lanes> F64<L> {
     }
 
     /// Low and high words of each lane's bits.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn words(self) -> (U32<L>, U32<L>) {
         self.l.op(
             #[inline(always)]
@@ -84,12 +84,12 @@ impl<L: Lanes> F64<L> {
         )
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn lanes(self) -> L {
         self.l
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn floor(self) -> Self {
         self.l.op(
             #[inline(always)]
@@ -101,7 +101,7 @@ impl<L: Lanes> F64<L> {
         )
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn lt(self, o: Self) -> Mask<L> {
         self.l.op(
             #[inline(always)]
@@ -114,7 +114,7 @@ impl<L: Lanes> F64<L> {
     }
 
     /// Nearest integer, ties to even, of lanes limited to ±`limit` < 2³¹.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn round_to_i32(self, limit: f64) -> I32<L> {
         self.l.op(
             #[inline(always)]
@@ -139,7 +139,7 @@ macro_rules! op {
     ($trait:ident, $method:ident) => {
         impl<L: Lanes> $trait for F64<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn $method(self, o: Self) -> Self {
                 self.l.op(
                     #[inline(always)]
@@ -154,7 +154,7 @@ macro_rules! op {
 
         impl<L: Lanes> $trait<f64> for F64<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn $method(self, o: f64) -> Self {
                 $trait::$method(self, Self::splat(self.l, o))
             }

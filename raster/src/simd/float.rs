@@ -14,13 +14,13 @@ pub struct F32<L: Lanes> {
 }
 
 impl<L: Lanes> F32<L> {
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn new(l: L, v: f32x16<L::Isa>) -> Self {
         Self { v, l }
     }
 
     /// The same value in every lane.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn splat(l: L, x: f32) -> Self {
         Self {
             v: f32x16::splat(l.isa(), x),
@@ -29,7 +29,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// Lane `i` is element `i`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn from_array(l: L, a: &[f32; LANES]) -> Self {
         Self {
             v: f32x16::from_slice(l.isa(), a),
@@ -38,7 +38,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// Element `i` is lane `i`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_array(self) -> [f32; LANES] {
         let mut a = [0.0; LANES];
         self.v.store_slice(&mut a);
@@ -46,19 +46,19 @@ impl<L: Lanes> F32<L> {
     }
 
     /// Writes lane `i` to element `i`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn store(self, a: &mut [f32; LANES]) {
         self.v.store_slice(a);
     }
 
     /// The level's token.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn lanes(self) -> L {
         self.l
     }
 
     /// Absolute value; clears the sign bit, of NaN too.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn abs(self) -> Self {
         Self {
             v: self.l.op(
@@ -70,7 +70,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// Correctly rounded square root; NaN below zero.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn sqrt(self) -> Self {
         Self {
             v: self.l.op(
@@ -82,13 +82,13 @@ impl<L: Lanes> F32<L> {
     }
 
     /// Correctly rounded 1/x.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn recip(self) -> Self {
         Self::splat(self.l, 1.0) / self
     }
 
     /// Largest integer not above.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn floor(self) -> Self {
         Self {
             v: self.l.op(
@@ -100,7 +100,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// Smallest integer not below.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn ceil(self) -> Self {
         Self {
             v: self.l.op(
@@ -112,7 +112,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// Nearest integer, ties to even.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn round_ties_even(self) -> Self {
         Self {
             v: self.l.op(
@@ -124,26 +124,26 @@ impl<L: Lanes> F32<L> {
     }
 
     /// `if self < o { self } else { o }`: the second operand where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn min(self, o: Self) -> Self {
         self.lt(o).select_f32(self, o)
     }
 
     /// `if self > o { self } else { o }`: the second operand where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn max(self, o: Self) -> Self {
         self.gt(o).select_f32(self, o)
     }
 
     /// `self.max(lo).min(hi)`: NaN becomes `lo`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn clamp(self, lo: f32, hi: f32) -> Self {
         self.max(Self::splat(self.l, lo))
             .min(Self::splat(self.l, hi))
     }
 
     /// `self < o`; false where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn lt(self, o: Self) -> Mask<L> {
         Mask {
             v: self.l.op(
@@ -155,7 +155,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// `self <= o`; false where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn le(self, o: Self) -> Mask<L> {
         Mask {
             v: self.l.op(
@@ -167,7 +167,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// `self > o`; false where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn gt(self, o: Self) -> Mask<L> {
         Mask {
             v: self.l.op(
@@ -179,7 +179,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// `self >= o`; false where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn ge(self, o: Self) -> Mask<L> {
         Mask {
             v: self.l.op(
@@ -191,7 +191,7 @@ impl<L: Lanes> F32<L> {
     }
 
     /// `self == o`; false where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn eq(self, o: Self) -> Mask<L> {
         Mask {
             v: self.l.op(
@@ -203,13 +203,13 @@ impl<L: Lanes> F32<L> {
     }
 
     /// `self != o`; true where one is NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn ne(self, o: Self) -> Mask<L> {
         !self.eq(o)
     }
 
     /// Truncates towards zero; saturates; NaN becomes 0 (as Rust's `as`).
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_i32(self) -> I32<L> {
         I32::new(
             self.l,
@@ -220,14 +220,22 @@ impl<L: Lanes> F32<L> {
         )
     }
 
-    /// The bits of each float.
-    #[inline(always)]
+    /// The bits of each float; of every NaN those of the canonical one, since the sign
+    /// and payload of a NaN that arithmetic makes differ from machine to machine.
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_bits(self) -> U32<L> {
+        self.canonical_nan().raw_bits()
+    }
+
+    /// The bits of each float as they are: for values that are no NaN, or whose bits
+    /// nobody gets to see.
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
+    pub(crate) fn raw_bits(self) -> U32<L> {
         U32::new(self.l, self.v.bitcast())
     }
 
     /// Replaces every NaN by the canonical one, `0x7fc0_0000`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn canonical_nan(self) -> Self {
         self.eq(self)
             .select_f32(self, Self::splat(self.l, f32::from_bits(0x7fc0_0000)))
@@ -235,7 +243,7 @@ impl<L: Lanes> F32<L> {
 
     /// Difference in x inside each 2×2 quad (fine derivative): right minus
     /// left, of the lane's own row.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn quad_ddx(self) -> Self {
         let right = permute(self, [1, 1, 3, 3, 5, 5, 7, 7, 9, 9, 11, 11, 13, 13, 15, 15]);
         let left = permute(self, [0, 0, 2, 2, 4, 4, 6, 6, 8, 8, 10, 10, 12, 12, 14, 14]);
@@ -244,7 +252,7 @@ impl<L: Lanes> F32<L> {
 
     /// Difference in y inside each 2×2 quad (fine derivative): lower row minus
     /// upper row, of the lane's own column.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn quad_ddy(self) -> Self {
         let below = permute(
             self,
@@ -256,7 +264,7 @@ impl<L: Lanes> F32<L> {
 }
 
 /// Lane `i` of the result is lane `order[i]` of `x`.
-#[inline(always)]
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
 fn permute<L: Lanes>(x: F32<L>, order: [u8; LANES]) -> F32<L> {
     let mut bytes = [0u8; 64];
     for (i, o) in order.into_iter().enumerate() {
@@ -276,7 +284,7 @@ fn permute<L: Lanes>(x: F32<L>, order: [u8; LANES]) -> F32<L> {
 
 impl<L: Lanes> Mask<L> {
     /// `if mask { yes } else { no }`, per lane.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn select_f32(self, yes: F32<L>, no: F32<L>) -> F32<L> {
         F32 {
             v: self.l.op(
@@ -291,12 +299,12 @@ impl<L: Lanes> Mask<L> {
 impl<L: Lanes> F32<L> {
     /// The larger of the operands' bits as unsigned integers: at most that of
     /// 1.0 exactly where all operands lie in 0..=1 and none is −0 or NaN.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn all_in_unit(v: &[Self; 4]) -> Mask<L> {
         let largest = v[0]
-            .to_bits()
-            .max(v[1].to_bits())
-            .max(v[2].to_bits().max(v[3].to_bits()));
+            .raw_bits()
+            .max(v[1].raw_bits())
+            .max(v[2].raw_bits().max(v[3].raw_bits()));
         largest.le(U32::splat(v[0].l, 1.0f32.to_bits()))
     }
 }
@@ -305,7 +313,7 @@ macro_rules! float_op {
     ($trait:ident, $method:ident) => {
         impl<L: Lanes> $trait for F32<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn $method(self, o: Self) -> Self {
                 Self {
                     v: self.l.op(
@@ -319,7 +327,7 @@ macro_rules! float_op {
 
         impl<L: Lanes> $trait<f32> for F32<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn $method(self, o: f32) -> Self {
                 $trait::$method(self, Self::splat(self.l, o))
             }
@@ -333,7 +341,7 @@ float_op!(Div, div);
 
 impl<L: Lanes> Neg for F32<L> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn neg(self) -> Self {
         Self {
             v: self.l.op(

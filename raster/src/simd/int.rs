@@ -16,25 +16,25 @@ macro_rules! int_lanes {
         }
 
         impl<L: Lanes> $name<L> {
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub(crate) fn new(l: L, v: $vec<L::Isa>) -> Self {
                 Self { v, l }
             }
 
             /// The same value in every lane.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn splat(l: L, x: $elem) -> Self {
                 Self { v: $vec::splat(l.isa(), x), l }
             }
 
             /// Lane `i` is element `i`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn from_array(l: L, a: &[$elem; LANES]) -> Self {
                 Self { v: $vec::from_slice(l.isa(), a), l }
             }
 
             /// Element `i` is lane `i`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn to_array(self) -> [$elem; LANES] {
                 let mut a = [0; LANES];
                 self.v.store_slice(&mut a);
@@ -42,61 +42,61 @@ macro_rules! int_lanes {
             }
 
             /// Writes lane `i` to element `i`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn store(self, a: &mut [$elem; LANES]) {
                 self.v.store_slice(a);
             }
 
             /// The smaller of the two.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn min(self, o: Self) -> Self {
                 Self { v: self.l.op(#[inline(always)] || self.v.min(o.v)), l: self.l }
             }
 
             /// The larger of the two.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn max(self, o: Self) -> Self {
                 Self { v: self.l.op(#[inline(always)] || self.v.max(o.v)), l: self.l }
             }
 
             /// `self == o`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn eq(self, o: Self) -> Mask<L> {
                 Mask { v: self.l.op(#[inline(always)] || self.v.simd_eq(o.v)), l: self.l }
             }
 
             /// `self < o`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn lt(self, o: Self) -> Mask<L> {
                 Mask { v: self.l.op(#[inline(always)] || self.v.simd_lt(o.v)), l: self.l }
             }
 
             /// `self <= o`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn le(self, o: Self) -> Mask<L> {
                 Mask { v: self.l.op(#[inline(always)] || self.v.simd_le(o.v)), l: self.l }
             }
 
             /// `self > o`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn gt(self, o: Self) -> Mask<L> {
                 Mask { v: self.l.op(#[inline(always)] || self.v.simd_gt(o.v)), l: self.l }
             }
 
             /// `self >= o`.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn ge(self, o: Self) -> Mask<L> {
                 Mask { v: self.l.op(#[inline(always)] || self.v.simd_ge(o.v)), l: self.l }
             }
 
             /// Smallest of the sixteen lanes.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn reduce_min(self) -> $elem {
                 self.l.op(#[inline(always)] || self.v.reduce_min())
             }
 
             /// Largest of the sixteen lanes.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn reduce_max(self) -> $elem {
                 self.l.op(#[inline(always)] || self.v.reduce_max())
             }
@@ -104,7 +104,7 @@ macro_rules! int_lanes {
 
         impl<L: Lanes> Mask<L> {
             /// `if mask { yes } else { no }`, per lane.
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             pub fn $select(self, yes: $name<L>, no: $name<L>) -> $name<L> {
                 $name { v: self.l.op(#[inline(always)] || self.l.isa().$select_intrinsic(self.v, yes.v, no.v)), l: self.l }
             }
@@ -119,7 +119,7 @@ macro_rules! int_lanes {
 
         impl<L: Lanes> Not for $name<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn not(self) -> Self {
                 Self { v: self.l.op(#[inline(always)] || !self.v), l: self.l }
             }
@@ -127,7 +127,7 @@ macro_rules! int_lanes {
 
         impl<L: Lanes> Shl<u32> for $name<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn shl(self, n: u32) -> Self {
                 Self { v: self.l.op(#[inline(always)] || self.v << n), l: self.l }
             }
@@ -135,7 +135,7 @@ macro_rules! int_lanes {
 
         impl<L: Lanes> Shr<u32> for $name<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn shr(self, n: u32) -> Self {
                 Self { v: self.l.op(#[inline(always)] || self.v >> n), l: self.l }
             }
@@ -144,7 +144,7 @@ macro_rules! int_lanes {
     (@op $name:ident, $trait:ident, $method:ident) => {
         impl<L: Lanes> $trait for $name<L> {
             type Output = Self;
-            #[inline(always)]
+            #[cfg_attr(not(gnomon_unoptimised), inline(always))]
             fn $method(self, o: Self) -> Self {
                 Self { v: self.l.op(#[inline(always)] || $trait::$method(self.v, o.v)), l: self.l }
             }
@@ -171,7 +171,7 @@ int_lanes!(
 
 impl<L: Lanes> I32<L> {
     /// Nearest float, ties to even.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_f32(self) -> F32<L> {
         F32::new(
             self.l,
@@ -183,7 +183,7 @@ impl<L: Lanes> I32<L> {
     }
 
     /// The same bits, unsigned.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_u32(self) -> U32<L> {
         U32::new(self.l, self.v.bitcast())
     }
@@ -191,13 +191,13 @@ impl<L: Lanes> I32<L> {
 
 impl<L: Lanes> U32<L> {
     /// The same bits, signed.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_i32(self) -> I32<L> {
         I32::new(self.l, self.v.bitcast())
     }
 
     /// `(a0, b0, a1, b1, …, b7)` and `(a8, b8, …, b15)`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub(crate) fn interleave(self, o: Self) -> (Self, Self) {
         let (a, b) = self.l.op(
             #[inline(always)]
@@ -207,7 +207,7 @@ impl<L: Lanes> U32<L> {
     }
 
     /// The float with these bits.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn to_f32_bits(self) -> F32<L> {
         F32::new(self.l, self.v.bitcast())
     }

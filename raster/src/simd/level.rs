@@ -3,7 +3,56 @@
 use core::fmt;
 use core::str::FromStr;
 
-use fearless_simd::Level;
+use fearless_simd::{Fallback, Level};
+
+/// The levels that code is compiled for, each once: what can be chosen is what
+/// [`with_lanes`] matches, on every target.
+macro_rules! levels {
+    ($($arch:literal: $($variant:ident $name:literal $ask:ident;)*)*) => {
+        /// Proof that the CPU has a level.
+        #[derive(Clone, Copy)]
+        pub(crate) enum Token {
+            Scalar(Fallback),
+            $($(
+                #[cfg(target_arch = $arch)]
+                $variant(fearless_simd::$variant),
+            )*)*
+        }
+
+        impl Token {
+            fn name(self) -> &'static str {
+                match self {
+                    Self::Scalar(_) => "scalar",
+                    $($(
+                        #[cfg(target_arch = $arch)]
+                        Self::$variant(_) => $name,
+                    )*)*
+                }
+            }
+
+            /// Those that a CPU with `level` has, narrowest first.
+            #[allow(unused_variables, reason = "some targets have the scalar level only")]
+            fn all_of(level: Level) -> Vec<Self> {
+                #[allow(unused_mut, reason = "likewise")]
+                let mut all = vec![Self::Scalar(Fallback::new())];
+                $($(
+                    #[cfg(target_arch = $arch)]
+                    all.extend(level.$ask().map(Self::$variant));
+                )*)*
+                all
+            }
+        }
+    };
+}
+// SSE4.2 alone gains too little over SSE2 to be compiled as a level of its own.
+levels! {
+    "x86_64":
+        Sse2 "sse2" as_sse2;
+        Avx2 "avx2" as_avx2;
+        Avx512 "avx512" as_avx512;
+    "aarch64":
+        Neon "neon" as_neon;
+}
 
 /// An instruction-set level that this machine can run.
 ///
@@ -12,7 +61,7 @@ use fearless_simd::Level;
 /// ways to one.
 #[derive(Clone, Copy)]
 pub struct SimdLevel {
-    level: Level,
+    token: Token,
 }
 
 /// A level's name that is unknown, or that this CPU cannot run.
@@ -26,26 +75,22 @@ pub struct UnknownSimdLevel {
 }
 
 impl SimdLevel {
-    /// The widest level that the CPU has.
+    /// The widest level that the CPU has, of those that there is code for: the scalar
+    /// one on architectures without any.
     #[must_use]
     pub fn detect() -> Self {
         #[allow(clippy::disallowed_methods, reason = "the one place that asks the CPU")]
-        let level = Level::new();
-        // SSE4.2 alone gains too little over SSE2 to be compiled as a level of its own.
-        #[cfg(target_arch = "x86_64")]
-        if let (Level::Sse4_2(_), Some(sse2)) = (level, level.as_sse2()) {
-            return Self {
-                level: Level::Sse2(sse2),
-            };
+        let all = Token::all_of(Level::new());
+        Self {
+            token: all[all.len() - 1],
         }
-        Self { level }
     }
 
     /// One lane at a time, on any machine.
     #[must_use]
     pub fn scalar() -> Self {
         Self {
-            level: Level::fallback(),
+            token: Token::Scalar(Fallback::new()),
         }
     }
 
@@ -55,47 +100,19 @@ impl SimdLevel {
         if cfg!(gnomon_widest) {
             return vec![Self::detect()];
         }
-        let best = Self::detect().level;
-        let mut levels = vec![Self::scalar()];
-        #[cfg(target_arch = "x86_64")]
-        {
-            levels.extend(best.as_sse2().map(|t| Self {
-                level: Level::Sse2(t),
-            }));
-            levels.extend(best.as_avx2().map(|t| Self {
-                level: Level::Avx2(t),
-            }));
-            levels.extend(best.as_avx512().map(|t| Self {
-                level: Level::Avx512(t),
-            }));
-        }
-        #[cfg(target_arch = "aarch64")]
-        levels.extend(best.as_neon().map(|t| Self {
-            level: Level::Neon(t),
-        }));
-        let _ = best;
-        levels
+        #[allow(clippy::disallowed_methods, reason = "the same CPU is asked")]
+        let all = Token::all_of(Level::new());
+        all.into_iter().map(|token| Self { token }).collect()
     }
 
     /// The level's stable name: `scalar`, `sse2`, `avx2`, `avx512`, `neon`.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self.level {
-            Level::Fallback(_) => "scalar",
-            #[cfg(target_arch = "x86_64")]
-            Level::Sse2(_) => "sse2",
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2(_) => "avx2",
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512(_) => "avx512",
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon(_) => "neon",
-            _ => "other",
-        }
+        self.token.name()
     }
 
-    pub(crate) fn level(self) -> Level {
-        self.level
+    pub(crate) fn token(self) -> Token {
+        self.token
     }
 }
 
@@ -108,31 +125,33 @@ impl SimdLevel {
 /// profiles; the machine must have AVX-512 or NEON then.
 macro_rules! with_lanes {
     ($level:expr, $lanes:ident => $op:expr) => {{
+        #[allow(unused_imports, reason = "the scalar level does without")]
         use fearless_simd::Simd as _;
-        match $level.level() {
+        match $level.token() {
             #[cfg(not(gnomon_widest))]
-            fearless_simd::Level::Fallback($lanes) => $op,
+            $crate::simd::Token::Scalar($lanes) => $op,
             #[cfg(all(target_arch = "x86_64", not(gnomon_widest)))]
-            fearless_simd::Level::Sse2($lanes) => $lanes.vectorize(
+            $crate::simd::Token::Sse2($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,
             ),
             #[cfg(all(target_arch = "x86_64", not(gnomon_widest)))]
-            fearless_simd::Level::Avx2($lanes) => $lanes.vectorize(
+            $crate::simd::Token::Avx2($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,
             ),
             #[cfg(target_arch = "x86_64")]
-            fearless_simd::Level::Avx512($lanes) => $lanes.vectorize(
+            $crate::simd::Token::Avx512($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,
             ),
             #[cfg(target_arch = "aarch64")]
-            fearless_simd::Level::Neon($lanes) => $lanes.vectorize(
+            $crate::simd::Token::Neon($lanes) => $lanes.vectorize(
                 #[inline(always)]
                 || $op,
             ),
-            _ => unreachable!("SimdLevel is built from the levels above only"),
+            #[cfg(gnomon_widest)]
+            _ => panic!("built with --cfg gnomon_widest, which needs AVX-512 or NEON"),
         }
     }};
 }
@@ -200,12 +219,33 @@ mod tests {
     }
 
     #[test]
+    fn what_is_detected_is_the_widest_that_is_available() {
+        assert_eq!(
+            SimdLevel::available().last().copied(),
+            Some(SimdLevel::detect())
+        );
+        assert_eq!("auto".parse(), Ok(SimdLevel::detect()));
+    }
+
+    /// As on an architecture that no vector code is compiled for: whatever the CPU
+    /// has, the list starts with what always runs.
+    #[test]
+    fn a_cpu_without_a_known_level_falls_back_to_the_scalar_one() {
+        let all = Token::all_of(Level::fallback());
+        let names: Vec<_> = all.into_iter().map(Token::name).collect();
+        assert_eq!(names, ["scalar"]);
+    }
+
+    #[test]
     fn with_lanes_runs_the_level_asked_for() {
         for l in SimdLevel::available() {
-            let got = with_lanes!(l, s => format!("{:?}", s.level()));
-            assert!(!got.is_empty());
-            let ran = with_lanes!(l, s => SimdLevel { level: s.level() }.name());
-            assert_eq!(ran, l.name());
+            let ran = with_lanes!(l, s => format!("{:?}", s.level())).to_lowercase();
+            let name = if l == SimdLevel::scalar() {
+                "fallback"
+            } else {
+                l.name()
+            };
+            assert!(ran.starts_with(name), "{ran} ran for {l}");
         }
     }
 }

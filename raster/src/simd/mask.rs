@@ -15,7 +15,7 @@ pub struct Mask<L: Lanes> {
 
 impl<L: Lanes> Mask<L> {
     /// All lanes true, or all false.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn splat(l: L, b: bool) -> Self {
         Self {
             v: mask32x16::splat(l.isa(), b),
@@ -24,7 +24,7 @@ impl<L: Lanes> Mask<L> {
     }
 
     /// Lane `i` is bit `i`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn from_bits(l: L, bits: u16) -> Self {
         Self {
             v: l.op(
@@ -36,7 +36,7 @@ impl<L: Lanes> Mask<L> {
     }
 
     /// Bit `i` is lane `i`.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn bits(self) -> u16 {
         self.l.op(
             #[inline(always)]
@@ -45,13 +45,13 @@ impl<L: Lanes> Mask<L> {
     }
 
     /// Whether any lane is true.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn any(self) -> bool {
         self.bits() != 0
     }
 
     /// Whether every lane is true.
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn all(self) -> bool {
         self.bits() == u16::MAX
     }
@@ -59,7 +59,7 @@ impl<L: Lanes> Mask<L> {
 
 impl<L: Lanes> BitAnd for Mask<L> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn bitand(self, o: Self) -> Self {
         Self {
             v: self.l.op(
@@ -73,7 +73,7 @@ impl<L: Lanes> BitAnd for Mask<L> {
 
 impl<L: Lanes> BitOr for Mask<L> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn bitor(self, o: Self) -> Self {
         Self {
             v: self.l.op(
@@ -87,7 +87,7 @@ impl<L: Lanes> BitOr for Mask<L> {
 
 impl<L: Lanes> BitXor for Mask<L> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn bitxor(self, o: Self) -> Self {
         Self {
             v: self.l.op(
@@ -101,7 +101,7 @@ impl<L: Lanes> BitXor for Mask<L> {
 
 impl<L: Lanes> Not for Mask<L> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     fn not(self) -> Self {
         Self {
             v: self.l.op(

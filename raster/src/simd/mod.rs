@@ -19,14 +19,17 @@ mod half;
 mod int;
 mod level;
 mod mask;
+mod seam;
 mod short;
 
 pub(crate) use double::{F64, round_to_i32};
 pub use float::F32;
 pub use int::{I32, U32};
-pub(crate) use level::with_lanes;
 pub use level::{SimdLevel, UnknownSimdLevel};
+pub(crate) use level::{Token, with_lanes};
 pub use mask::Mask;
+pub(crate) use seam::outlined;
+pub use seam::{each3, each4};
 pub(crate) use short::{Mask16, U16};
 
 use fearless_simd::{Simd, f32x16, u16x16};
@@ -83,27 +86,6 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn float_from_half(self, _h: u16x16<Self::Isa>) -> Option<f32x16<Self::Isa>> {
         None
     }
-}
-
-/// `[f(0), f(1), f(2)]`, inlined without fail: `array::from_fn` may stay a call
-/// of its own and would lose the level's instructions. Annotate the closure with
-/// `#[inline(always)]`.
-#[inline(always)]
-pub fn each3<T>(mut f: impl FnMut(usize) -> T) -> [T; 3] {
-    [f(0), f(1), f(2)]
-}
-
-/// `[f(0), f(1), f(2), f(3)]`, as [`each3`].
-#[inline(always)]
-pub fn each4<T>(mut f: impl FnMut(usize) -> T) -> [T; 4] {
-    [f(0), f(1), f(2), f(3)]
-}
-
-/// Runs `f` in a function of its own, compiled for the level: a seam that keeps
-/// inlining from multiplying the code.
-#[inline(always)]
-pub(crate) fn outlined<L: Lanes, T>(l: L, f: impl FnOnce() -> T) -> T {
-    l.apart(f)
 }
 
 /// A level that the compiler would otherwise inline into functions of 100,000 lines:

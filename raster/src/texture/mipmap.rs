@@ -3,6 +3,7 @@
 use super::{Subresource, Texture, TextureDimension};
 use crate::error::Error;
 use crate::format::{Format, decode, encode};
+use crate::memory::reserve;
 
 /// One source texel's share in a destination texel, along one axis.
 struct Share {
@@ -124,6 +125,11 @@ impl Texture {
     fn level(&self, mip: u32, layer: u32) -> Result<Level, Error> {
         let size = self.mip_size(mip);
         let mut texels = Vec::new();
+        let n = size.iter().map(|s| *s as usize).product();
+        let label = &self.desc.label;
+        reserve(&mut texels, n, || {
+            format!("level {mip} of `{label}` in doubles")
+        })?;
         for z in 0..size[2] {
             let raw = self.read_raw(Subresource {
                 mip,

@@ -10,6 +10,7 @@ use super::resource::{Subresource, Texture, image_size, pixels};
 use super::{HIZ_STALE, TextureDescriptor};
 use crate::error::Error;
 use crate::format::Format;
+use crate::memory::reserve;
 
 /// Bits of 1.0, the largest depth that is stored as a float.
 const FLOAT_ONE: u32 = 0x3f80_0000;
@@ -59,9 +60,11 @@ impl Texture {
     /// bytes of D24, 4 of a float), then all stencils.
     ///
     /// # Errors
-    /// There is no such image.
+    /// There is no such image, or memory is short.
     pub fn read_packed(&self, s: Subresource) -> Result<Vec<u8>, Error> {
-        let mut bytes = Vec::with_capacity(packed_len(&self.desc, s)?);
+        let mut bytes = Vec::new();
+        let what = || format!("a copy of the texels of `{}`", self.desc.label);
+        reserve(&mut bytes, packed_len(&self.desc, s)?, what)?;
         let layout = &self.layouts[s.mip as usize];
         match &self.planes[s.mip as usize][s.layer as usize] {
             Plane::Color(blocks) => read_color(blocks, self.desc.format, layout, &mut bytes),

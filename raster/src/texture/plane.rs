@@ -1,7 +1,9 @@
 //! Storage of one subresource: an aspect a plane, a plane in 8×8 blocks.
 
 use super::Layout;
+use crate::error::Error;
 use crate::format::{Format, from_stored, to_stored};
+use crate::memory::filled;
 
 /// 64 values of one block, row by row; a cache line or more of its own.
 #[derive(Clone, Copy)]
@@ -58,28 +60,36 @@ pub(crate) enum Plane {
 }
 
 impl Plane {
-    /// Zero colour, or depth 0 and stencil 0.
-    pub(crate) fn new(format: Format, layout: &Layout) -> Self {
+    /// Zero colour, or depth 0 and stencil 0. `what` names it where memory is short.
+    pub(crate) fn new(
+        format: Format,
+        layout: &Layout,
+        what: impl Fn() -> String,
+    ) -> Result<Self, Error> {
         let n = layout.blocks();
-        match format {
+        Ok(match format {
             Format::Depth24Stencil8 | Format::Depth32FloatStencil8 => Self::Depth(DepthPlane {
-                depth: vec![Block([0; 64]); n],
-                stencil: vec![Block([0; 64]); n],
+                depth: filled(Block([0; 64]), n, &what)?,
+                stencil: filled(Block([0; 64]), n, &what)?,
                 hiz: HizPlane {
-                    min: vec![0; n],
-                    max: vec![0; n],
+                    min: filled(0, n, &what)?,
+                    max: filled(0, n, &what)?,
                 },
             }),
-            Format::R8Unorm => Self::Color(ColorBlocks::B8(vec![Block([0; 64]); n])),
+            Format::R8Unorm => Self::Color(ColorBlocks::B8(filled(Block([0; 64]), n, what)?)),
             Format::Rg8Unorm | Format::R16Sint | Format::R16Float => {
-                Self::Color(ColorBlocks::B16(vec![Block([0; 64]); n]))
+                Self::Color(ColorBlocks::B16(filled(Block([0; 64]), n, what)?))
             }
             Format::Rgba8Unorm | Format::R32Float | Format::R32Uint => {
-                Self::Color(ColorBlocks::B32(vec![Block([0; 64]); n]))
+                Self::Color(ColorBlocks::B32(filled(Block([0; 64]), n, what)?))
             }
-            Format::Rgba16Float => Self::Color(ColorBlocks::B16x4(vec![Block4([[0; 64]; 4]); n])),
-            Format::Rgba32Float => Self::Color(ColorBlocks::B32x4(vec![Block4([[0; 64]; 4]); n])),
-        }
+            Format::Rgba16Float => {
+                Self::Color(ColorBlocks::B16x4(filled(Block4([[0; 64]; 4]), n, what)?))
+            }
+            Format::Rgba32Float => {
+                Self::Color(ColorBlocks::B32x4(filled(Block4([[0; 64]; 4]), n, what)?))
+            }
+        })
     }
 }
 

@@ -4,6 +4,7 @@ use super::plane::{ColorBlocks, DepthPlane, Plane};
 use super::{HIZ_STALE, Layout};
 use crate::error::Error;
 use crate::format::{self, Format, decode, encode, encode_depth};
+use crate::memory::collected;
 use crate::{MAX_TEXTURE_BYTES, MAX_TEXTURE_SIZE};
 
 /// Names a texture of a [`crate::Gpu`].
@@ -100,11 +101,8 @@ impl Texture {
         for mip in 0..desc.mip_levels {
             let (layout, layers) = level(desc, mip);
             layouts.push(layout);
-            planes.push(
-                (0..layers)
-                    .map(|_| Plane::new(desc.format, &layout))
-                    .collect(),
-            );
+            let image = || Plane::new(desc.format, &layout, || storage_name(desc));
+            planes.push((0..layers).map(|_| image()).collect::<Result<_, _>>()?);
         }
         Ok(Self {
             desc: desc.clone(),
@@ -146,6 +144,20 @@ impl Texture {
         }
     }
 
+    /// What `texel` gives for each pixel's block and place in it, rows from the top.
+    fn read<T>(
+        &self,
+        s: Subresource,
+        texel: impl Fn((usize, usize)) -> T,
+    ) -> Result<Vec<T>, Error> {
+        let l = &self.layouts[s.mip as usize];
+        let n = l.width as usize * l.height as usize;
+        let texels = pixels(l).map(|(x, y)| texel(l.locate(x, y)));
+        collected(texels, n, || {
+            format!("a copy of the texels of `{}`", self.desc.label)
+        })
+    }
+
     fn wrong_aspect(&self, wanted: &'static str) -> Error {
         Error::WrongAspect {
             texture: self.desc.label.clone(),
@@ -158,71 +170,50 @@ impl Texture {
     /// top: unorm bytes, half bits, float bits or integers.
     ///
     /// # Errors
-    /// Where the subresource does not exist or is not colour.
+    /// Where the subresource does not exist or is not colour, or memory is short.
     pub fn read_raw(&self, s: Subresource) -> Result<Vec<[u32; 4]>, Error> {
         let blocks = self.color(s)?;
-        let l = &self.layouts[s.mip as usize];
-        Ok(pixels(l)
-            .map(|(x, y)| blocks.get(self.desc.format, l.locate(x, y)))
-            .collect())
+        self.read(s, |at| blocks.get(self.desc.format, at))
     }
 
     /// Decoded texels, row by row from the top. Integers become floats.
     ///
     /// # Errors
-    /// Where the subresource does not exist or is not colour.
+    /// Where the subresource does not exist or is not colour, or memory is short.
     pub fn read_color(&self, s: Subresource) -> Result<Vec<ColorTexel>, Error> {
-        Ok(self
-            .read_raw(s)?
-            .into_iter()
-            .map(|t| ColorTexel(decode(self.desc.format, t)))
-            .collect())
+        let (blocks, f) = (self.color(s)?, self.desc.format);
+        self.read(s, |at| ColorTexel(decode(f, blocks.get(f, at))))
     }
 
     /// Depth of every pixel in 0..=1, row by row from the top.
     ///
     /// # Errors
-    /// Where the subresource does not exist or has no depth.
+    /// Where the subresource does not exist or has no depth, or memory is short.
     pub fn read_depth(&self, s: Subresource) -> Result<Vec<f32>, Error> {
         let float = self.desc.format == Format::Depth32FloatStencil8;
-        let to_f32 = |b: u32| {
-            if float {
-                f32::from_bits(b)
-            } else {
-                format::f32_from_d24(b)
-            }
-        };
-        Ok(self.read_depth_bits(s)?.into_iter().map(to_f32).collect())
+        let plane = self.depth(s)?;
+        self.read(s, |(b, i)| match plane.depth[b].0[i] {
+            bits if float => f32::from_bits(bits),
+            bits => format::f32_from_d24(bits),
+        })
     }
 
     /// Stored depth of every pixel: the D24 integer, or the float's bits.
     ///
     /// # Errors
-    /// Where the subresource does not exist or has no depth.
+    /// Where the subresource does not exist or has no depth, or memory is short.
     pub fn read_depth_bits(&self, s: Subresource) -> Result<Vec<u32>, Error> {
         let plane = self.depth(s)?;
-        let l = &self.layouts[s.mip as usize];
-        Ok(pixels(l)
-            .map(|(x, y)| {
-                let (b, i) = l.locate(x, y);
-                plane.depth[b].0[i]
-            })
-            .collect())
+        self.read(s, |(b, i)| plane.depth[b].0[i])
     }
 
     /// Stencil of every pixel, row by row from the top.
     ///
     /// # Errors
-    /// Where the subresource does not exist or has no stencil.
+    /// Where the subresource does not exist or has no stencil, or memory is short.
     pub fn read_stencil(&self, s: Subresource) -> Result<Vec<u8>, Error> {
         let plane = self.depth(s)?;
-        let l = &self.layouts[s.mip as usize];
-        Ok(pixels(l)
-            .map(|(x, y)| {
-                let (b, i) = l.locate(x, y);
-                plane.stencil[b].0[i]
-            })
-            .collect())
+        self.read(s, |(b, i)| plane.stencil[b].0[i])
     }
 
     /// Replaces a colour image; values are converted as a shader's output would
@@ -303,6 +294,20 @@ impl Texture {
         }
         Ok(())
     }
+}
+
+/// How an error names the storage of a texture.
+fn storage_name(desc: &TextureDescriptor) -> String {
+    let [w, h, d] = desc.size;
+    let depth = if d == 1 {
+        String::new()
+    } else {
+        format!("×{d}")
+    };
+    format!(
+        "an image of texture `{}` ({w}×{h}{depth}, {:?})",
+        desc.label, desc.format
+    )
 }
 
 /// Every pixel, row by row from the top.

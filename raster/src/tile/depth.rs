@@ -198,7 +198,7 @@ impl<const D24: bool> DepthBlock<D24> {
             let f = |b: i32| f32::from_bits(b as u32);
             let [base, sx, sy] = [f(self.base), f(self.slope[0]), f(self.slope[1])];
             let z = (F32::splat(l, base) + ix.to_f32() * sx) + iy.to_f32() * sy;
-            z.to_bits().to_i32()
+            z.raw_bits().to_i32()
         }
     }
 
@@ -214,7 +214,7 @@ impl<const D24: bool> DepthBlock<D24> {
             raw.to_u32()
                 .to_f32_bits()
                 .clamp(f(self.range[0]), f(self.range[1]))
-                .to_bits()
+                .raw_bits()
                 .to_i32()
         }
     }
@@ -312,7 +312,7 @@ impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
         let base = if D24 {
             (z * D24_SCALE).round_to_i32(D24_BASE_LIMIT)
         } else {
-            z.to_f32().to_bits().to_i32()
+            z.to_f32().raw_bits().to_i32()
         };
         Self {
             base,
@@ -343,7 +343,7 @@ impl<L: Lanes, const D24: bool> GroupDepth<L, D24> {
                 [f(self.range[0]), f(self.range[1])],
             );
             let z = (self.base.to_u32().to_f32_bits() + sx * ix as f32) + sy * iy as f32;
-            z.clamp(lo, hi).to_bits().to_i32()
+            z.clamp(lo, hi).raw_bits().to_i32()
         }
     }
 

@@ -181,6 +181,7 @@ fn run_bin<L: Lanes>(l: L, env: &mut block::Env<'_, '_>, bin: &[u32]) {
 #[inline(always)]
 fn fill_outputs<L: Lanes>(l: L, outputs: &mut [PacketOutput; PACKETS], color: [f32; 4]) {
     for out in outputs {
+        out.integers[0] = 0;
         for (channel, c) in out.color[0].iter_mut().zip(color) {
             F32::splat(l, c).store(channel);
         }

@@ -399,9 +399,10 @@ impl Block<'_> {
                 continue;
             }
             for f in fragments {
-                let src = f.output.as_ref().expect("shaded").color[attachment];
+                let output = f.output.as_ref().expect("shaded");
+                let (src, integer) = (output.color[attachment], output.integer[attachment]);
                 let old = image.texels[f.at];
-                let new = target.output(old, src, &mut self.counters.events);
+                let new = target.output(old, src, integer, &mut self.counters.events);
                 self.counters.events.silent_color_writes[attachment] += u64::from(new == old);
                 image.texels[f.at] = new;
                 self.access.color_write[attachment] |= f.bit;

@@ -40,7 +40,13 @@ impl Target<'_> {
     }
 
     /// The texel after a fragment's colour.
-    pub(super) fn output(&self, old: [u32; 4], src: [f32; 4], e: &mut EventCounters) -> [u32; 4] {
+    pub(super) fn output(
+        &self,
+        old: [u32; 4],
+        src: [f32; 4],
+        integer: bool,
+        e: &mut EventCounters,
+    ) -> [u32; 4] {
         let mut new = old;
         for c in self.written() {
             new[c] = match self.format {
@@ -48,7 +54,11 @@ impl Target<'_> {
                     self.unorm(c, old, src, e)
                 }
                 Format::R16Sint => self.sint(old[0], src[0], e),
-                Format::R32Uint => src[0].to_bits(),
+                Format::R32Uint if integer => src[0].to_bits(),
+                Format::R32Uint => {
+                    e.nan_canonicalised += u64::from(src[0].is_nan());
+                    f32_bits(src[0])
+                }
                 _ => self.float(c, old, src, e),
             };
         }

@@ -142,11 +142,11 @@ impl Program {
         };
         (out.counted[0], out.counted[1]) = (f.x % 2 == 1, out.discard);
         for o in 0..self.outputs {
-            out.color[o] = if self.uint[o] {
-                [self.integer(o, f, looked_up); 4]
+            if self.uint[o] {
+                out.set_uint(o, self.integer(o, f, looked_up));
             } else {
-                self.color(o, f, looked_up)
-            };
+                out.color[o] = self.color(o, f, looked_up);
+            }
         }
         out
     }
@@ -156,9 +156,9 @@ impl Program {
         o % self.look_ups.len().max(1)
     }
 
-    fn integer(&self, o: usize, f: &ScalarFragment, looked_up: &Values) -> f32 {
+    fn integer(&self, o: usize, f: &ScalarFragment, looked_up: &Values) -> u32 {
         if self.color == ColorSource::LookUps {
-            looked_up[self.look_up_of(o)][0]
+            looked_up[self.look_up_of(o)][0].to_bits()
         } else {
             hash(f)
         }
@@ -210,9 +210,9 @@ fn wild(table: &[u32; 8], shift: u32, varying: f32, f: &ScalarFragment) -> f32 {
     }
 }
 
-fn hash(f: &ScalarFragment) -> f32 {
+fn hash(f: &ScalarFragment) -> u32 {
     let [a, b, c] = HASH;
-    f32::from_bits(f.x.wrapping_mul(a) ^ f.y.wrapping_mul(b) ^ f.primitive_index.wrapping_mul(c))
+    f.x.wrapping_mul(a) ^ f.y.wrapping_mul(b) ^ f.primitive_index.wrapping_mul(c)
 }
 
 fn shade_depth(d: DepthSource, f: &ScalarFragment, looked_up: &Values) -> f32 {

@@ -107,6 +107,7 @@ struct Demo<'a> {
 impl Demo<'_> {
     fn stage_pictures(&mut self, progress: &Progress) -> Result<(), CliError> {
         for shot in self.shots {
+            png::check_room(shot.done.size)?;
             let bytes = png::encode(&overlay::picture(&shot.done));
             self.stage_picture("render", shot.entry.name, shot.entry.caption, bytes)?;
         }

@@ -30,6 +30,7 @@ pub(super) fn write(
         batch.stage(path, bytes)
     };
     progress.doing("writing");
+    png::check_room(done.size)?;
     stage("render", &job.out, &png::encode(&overlay::picture(done)))?;
     if let Some(path) = &args.visibility {
         stage(

@@ -35,7 +35,7 @@ impl Stored for u32 {
 
     #[inline(always)]
     fn store<L: Lanes>(v: F32<L>, words: &mut [u32; LANES], live: u16) -> u16 {
-        super::store32(v.canonical_nan().to_bits(), words, live)
+        super::store32(v.canonical_nan().raw_bits(), words, live)
     }
 }
 

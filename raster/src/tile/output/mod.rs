@@ -183,6 +183,20 @@ impl<L: Lanes> Writer<'_, L> {
         );
     }
 
+    /// An integer's bits as they are, a float's with NaN made canonical.
+    #[inline(always)]
+    fn uint_bits(&mut self, src: F32<L>, integers: u16, live: u16) -> U32<L> {
+        let nan = src.ne(src).bits() & !integers;
+        if nan == 0 {
+            return src.raw_bits();
+        }
+        if COUNT {
+            self.c.events.nan_canonicalised += u64::from((nan & live).count_ones());
+        }
+        let integers = Mask::from_bits(self.l, integers);
+        integers.select_u32(src.raw_bits(), src.to_bits())
+    }
+
     /// R32Uint: the bits that the shader gave.
     #[inline(always)]
     fn uint32(&mut self, block: &mut [u32; 64], out: &[PacketOutput; PACKETS], live: u64) {
@@ -191,7 +205,8 @@ impl<L: Lanes> Writer<'_, L> {
             #[inline(always)]
             |w, k, live| {
                 let src = F32::from_array(w.l, &out[k].color[w.attachment][0]);
-                store32(src.to_bits(), words(block, k), live)
+                let bits = w.uint_bits(src, out[k].integers[w.attachment], live);
+                store32(bits, words(block, k), live)
             },
         );
     }

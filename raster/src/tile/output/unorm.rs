@@ -147,7 +147,7 @@ impl<L: Lanes> Writer<'_, L> {
         // throw them out, but for red's.
         let [r, g, b, a] = each4(
             #[inline(always)]
-            |c| (src[c] * 255.0 + 8_388_608.0).to_bits(),
+            |c| (src[c] * 255.0 + 8_388_608.0).raw_bits(),
         );
         let red = r ^ U32::splat(self.l, 8_388_608f32.to_bits());
         (red | g << 8) | (b << 16 | a << 24)

@@ -200,7 +200,7 @@ mod tests {
             })
             .collect();
         for light in lights_of_all_kinds() {
-            assert!(bound(&[ball.clone()], light) <= 2, "{light:?}");
+            assert!(bound(std::slice::from_ref(&ball), light) <= 2, "{light:?}");
             let found = bound(&field, light);
             assert!(found < 64, "{light:?}: {found}");
         }

@@ -243,7 +243,8 @@ mod near_plane {
                 .to_vec(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],
         };
-        let scene = scene([0.0, 1.0, 0.56], [0.0, 0.0, -0.2], 0.15, vec![sheet]);
+        let mut scene = scene([0.0, 1.0, 0.56], [0.0, 0.0, -0.2], 0.15, vec![sheet]);
+        scene.lights = vec![sphere([1.6, 4.2, 3.0], 0.1)];
         let truth = Truth::of(&scene);
         for technique in [HARD, WEDGES, RESTRUCTURED, SOFT, OPTIMISED] {
             let done = draw(&scene, technique, &["open-casters=generalised"]);

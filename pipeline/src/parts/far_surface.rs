@@ -15,7 +15,7 @@ use crate::world::scene::{Object, Pyramid, clip_with};
 
 /// Distance of a vertex over that of the point looked at, from which on f32 is not
 /// trusted with it.
-const FAR: f64 = 64.0;
+const FAR: f64 = 16.0;
 /// Tangents that are kept over those in the picture.
 const MARGIN: f64 = 1.5;
 

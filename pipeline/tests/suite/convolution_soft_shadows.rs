@@ -399,7 +399,10 @@ fn settings_that_cannot_be_are_refused() {
     let scene = builtin::build("cylinder").unwrap();
     let technique = find("convolution-soft-shadows").unwrap();
     let message = |set: &[&str]| {
-        let params = Params::parse(technique, set).unwrap();
+        let params = match Params::parse(technique, set) {
+            Ok(params) => params,
+            Err(error) => return error.to_string(),
+        };
         let settings = RenderSettings {
             size: SIZE,
             ..RenderSettings::default()

@@ -2,6 +2,7 @@
 //! vertices, faces, closedness, and the defects of those that are not closed.
 //! Passes with a note where the folder is absent.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use gnomon_pipeline::geometry::caster::Caster;
@@ -74,11 +75,23 @@ fn meshes_are_as_their_table_says() {
     }
 }
 
+/// Vertices that a file lists, and points that they are: equal coordinates are one.
+fn vertices(text: &str) -> [usize; 2] {
+    let lines = text.lines().filter_map(|l| l.strip_prefix("v "));
+    let coordinate = |word: &str| (word.parse::<f64>().unwrap() + 0.0).to_bits();
+    let point = |l: &str| -> Vec<u64> { l.split_whitespace().take(3).map(coordinate).collect() };
+    let all: Vec<Vec<u64>> = lines.map(point).collect();
+    let distinct: BTreeSet<&Vec<u64>> = all.iter().collect();
+    [all.len(), distinct.len()]
+}
+
 fn check(folder: &std::path::Path, expected: &Row) {
     let file = &expected.file;
     let read = obj::load(&folder.join(file)).unwrap();
     let mesh = &read.shape.into_mesh(Shading::Smooth).unwrap();
-    assert_eq!(mesh.positions().len(), expected.vertices, "{file}");
+    let [lines, points] = vertices(&std::fs::read_to_string(folder.join(file)).unwrap());
+    assert_eq!(lines, expected.vertices, "{file}");
+    assert_eq!(mesh.positions().len(), points, "{file}");
     assert_eq!(mesh.triangles().len(), expected.faces, "{file}");
     let report = EdgeAdjacency::new(mesh.triangles()).closedness(mesh);
     let defects = [report.boundary, report.over_shared, report.flipped];

@@ -101,12 +101,11 @@ fn duplicates() -> Mesh {
     mesh(&positions, &triangles)
 }
 
-fn casters() -> [(&'static str, Mesh, u32); 4] {
+fn casters() -> [(&'static str, Mesh, u32); 3] {
     // Each with a count that some pixel has.
     [
         ("open cylinder", open_cylinder(), 2),
         ("three fins", three_fins(), 2),
-        ("glued shells", glued_shells(), 2),
         ("duplicates", duplicates(), 3),
     ]
 }
@@ -246,6 +245,31 @@ fn stencils_equal_the_weighted_count() {
         // Negative control: the rule of closed casters counts otherwise.
         assert!(seen.unweighted > 1_000, "{what}: {seen:?}");
     }
+}
+
+/// As many faces go one way along each of their edges as the other, so they need no
+/// generalised silhouettes: each body counts.
+#[test]
+fn shells_that_share_edges_are_closed() {
+    let mesh = glued_shells();
+    assert!(Caster::new(&mesh).report().is_closed());
+    let (mut compared, mut shadowed) = (0, 0);
+    for scene in scenes(&mesh) {
+        let truth = HardTruth::of_scene(&scene, 0, SIZE, EdgeTolerance::HALF_PIXEL_AND_DEPTH);
+        for method in ["method=zfail", "method=auto"] {
+            let drawn = draw(&scene, &[method]).unwrap();
+            let pixels = truth.pixels.iter().zip(&drawn.stencil);
+            for (pixel, stencil) in pixels.filter(|(p, _)| p.interior && p.centre.hit.is_some()) {
+                assert_eq!(u32::from(*stencil), pixel.centre.shadow_count, "{method}");
+                compared += 1;
+                shadowed += usize::from(*stencil > 0);
+            }
+        }
+    }
+    assert!(
+        compared > 80_000 && shadowed > 4_000,
+        "{compared} {shadowed}"
+    );
 }
 
 /// They are what they are said to be, and refused unless asked for.

@@ -326,10 +326,13 @@ fn bad_parameters_and_lights_are_refused() {
     let message = |name: &str, set: &str| sized(name, &scene, &[set], SIZE).unwrap_err();
     assert!(message("pcf", "taps=0").contains("1 to 64"));
     assert!(message("pcf", "taps=65").contains("1 to 64"));
-    assert!(message("shadow-map", "map-size=100").contains("64|128"));
+    assert!(message("shadow-map", "map-size=100").contains("a power of two, 16 to 4096"));
     assert!(message("shadow-map", "near=0").contains("above 0"));
     for bias in ["bias=-1", "bias=nan", "bias=inf", "bias=x"] {
-        assert!(message("shadow-map", bias).contains("auto|X"), "{bias}");
+        assert!(
+            message("shadow-map", bias).contains("auto, or a number from 0"),
+            "{bias}"
+        );
     }
     assert!(message("pcss", "samples=15").contains("square numbers"));
     assert!(message("shadow-maps-n", "maps=2000").contains("square numbers"));

@@ -421,8 +421,9 @@ fn a_low_sun_leaves_no_acne_on_what_casts() {
                 found.lit < 0.12,
                 "{technique} {set:?} {degrees} {turn}: {found:?}"
             );
+            // At one degree eight texels reach as far as 460 would straight below.
             assert!(
-                found.umbra < 0.3,
+                found.umbra < 0.35,
                 "{technique} {set:?} {degrees} {turn}: {found:?}"
             );
         }

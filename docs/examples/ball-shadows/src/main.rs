@@ -254,7 +254,11 @@ mod tests {
     /// Pixels in shadow, in the penumbra, and in light.
     fn counts(done: &Rendered) -> [usize; 3] {
         let of = |test: fn(f32) -> bool| done.visibility.iter().filter(|v| test(**v)).count();
-        [of(|v| v <= 0.0), of(|v| v > 0.0 && v < 1.0), of(|v| v >= 1.0)]
+        [
+            of(|v| v <= 0.0),
+            of(|v| v > 0.0 && v < 1.0),
+            of(|v| v >= 1.0),
+        ]
     }
 
     #[test]
@@ -291,7 +295,10 @@ mod tests {
         let registry = registry();
         let technique = registry.find("ball-shadows").unwrap();
         let refused = Params::parse(technique, ["softness=0"]).unwrap_err();
-        assert!(refused.to_string().contains("a number above 0"), "{refused}");
+        assert!(
+            refused.to_string().contains("a number above 0"),
+            "{refused}"
+        );
         assert!(registry.find("ball-shadow").is_err());
         assert!(registry.clone().register(&BallShadows).is_err());
     }

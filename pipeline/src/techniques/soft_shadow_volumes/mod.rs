@@ -29,8 +29,8 @@ use crate::parts::wedges::soft::edges::SoftCasters;
 use crate::parts::wedges::soft::light::SoftLight;
 use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings, WEDGE};
 use crate::technique::{
-    Capabilities, Condition, Frame, LightFact, Param, ParamInfo, Params, Pass, PassRole,
-    SceneWedges, ShadowKind, Technique, TechniqueError, WedgeUse,
+    Capabilities, Condition, Frame, Param, ParamInfo, Params, Pass, PassRole, SceneWedges,
+    ShadowKind, Technique, TechniqueError, WedgeUse,
 };
 use crate::world::scene::Scene;
 use crate::{choices, param_list};
@@ -61,10 +61,7 @@ const COPY_BACK: Param<bool> = Param::switch(
     false,
     "with r32f: no float blending, each wedge reads, writes aside and copies back",
 )
-.when(Condition::All(&[
-    Condition::Is("buffer", &["r32f"]),
-    Condition::Lights(LightFact::Extended),
-]));
+.when(Condition::Is("buffer", &["r32f"]));
 
 /// What parameters decide.
 struct SoftVolumesSettings {

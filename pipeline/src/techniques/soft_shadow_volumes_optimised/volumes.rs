@@ -62,7 +62,8 @@ impl PartVolumes<'_> {
         statistics: &mut PartStatistics,
     ) -> Vec<Pass> {
         let [added, taken] = self.buffers.split;
-        if !self.halves {
+        // A light without extent has no wedges to halve.
+        if !self.halves || self.light.sides.is_empty() {
             let to = WedgeTarget {
                 buffers: vec![added, taken],
                 half: None,

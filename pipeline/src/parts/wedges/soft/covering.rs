@@ -105,8 +105,7 @@ const LIGHT_IMAGE: Param<ImageName> = Param::choice(
     "light-image",
     ImageName::White.word(),
     "colours on a rectangle, by a coloured 4D texture: two, sixteen lights, a fire",
-)
-.when(EXTENDED);
+);
 
 const LIGHT_FRAME: Param<u32> = Param::<u32>::whole(
     "light-frame",

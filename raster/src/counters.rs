@@ -111,6 +111,10 @@ sum_fields!(Counters {
     accesses
 });
 
+/// Whether counting is compiled in; the `uncounted` feature exists to measure
+/// what it costs.
+pub(crate) const COUNT: bool = !cfg!(feature = "uncounted");
+
 /// Accesses and bytes of one memory client.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {

@@ -69,6 +69,7 @@
 
 mod command;
 mod counters;
+mod depth_plane;
 mod error;
 mod execute;
 pub mod format;

@@ -152,7 +152,7 @@ fn a_scene_in_units_of_a_power_of_two_has_the_same_bits() {
     for technique in ["shadow-volumes", "pcss", "soft-shadow-volumes"] {
         let one = shown(&parsed(UNITS), technique, &[]);
         for exponent in [-12, 5, 20] {
-            let text = scaled(UNITS, 2.0f64.powi(exponent));
+            let text = scaled(UNITS, libm::exp2(f64::from(exponent)));
             let other = shown(&parsed(&text), technique, &[]);
             let differ = one.visibility.iter().zip(&other.visibility);
             let differ = differ.filter(|(a, b)| a.to_bits() != b.to_bits()).count();

@@ -15,7 +15,7 @@ mod widen;
 
 pub(crate) use assemble::{Chunk, ChunkInput, process_chunk};
 pub(crate) use bin::TileGrid;
-pub(crate) use setup::{D24_BASE_LIMIT, D24_FRACTION, D24_SCALE, Triangle};
+pub(crate) use setup::{D24_BASE_LIMIT, D24_SCALE, Triangle};
 pub(crate) use shade::{ScreenVertex, ShadedVertices, shade_part};
 
 use crate::state::{CullMode, FrontFace, PrimitiveTopology, Viewport};

@@ -59,8 +59,6 @@ impl Packet {
     }
 }
 
-/// D24 depth planes carry this many fractional bits.
-pub(crate) const D24_FRACTION: u32 = 5;
 /// Depth 1 of D24 with its fraction.
 pub(crate) const D24_SCALE: f64 = 16_777_215.0 * 32.0;
 /// Limit of a D24 plane's value at a block's origin, and of its slope.

@@ -19,7 +19,7 @@ pub(super) struct Texels<'a> {
 
 /// Which part of a texture is read.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Aspect {
+pub(crate) enum Aspect {
     /// Colour, or depth.
     Main,
     /// Stencil.
@@ -27,7 +27,7 @@ pub(super) enum Aspect {
 }
 
 /// Where [`gather`] puts them: 256 bytes, filled in place.
-pub(super) const NO_WORDS: Words = [[0; LANES]; 4];
+pub(crate) const NO_WORDS: Words = [[0; LANES]; 4];
 
 /// Puts the stored bits of texels into `words`, which hold zeros; lanes that do not
 /// read are left alone. It does not depend on the instruction set.

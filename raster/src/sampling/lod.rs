@@ -6,7 +6,7 @@ use crate::state::{FilterMode, Sampler};
 
 /// What the level of detail comes from.
 #[derive(Clone, Copy)]
-pub(super) enum Detail<L: Lanes> {
+pub(crate) enum Detail<L: Lanes> {
     /// The change of the coordinate inside 2×2 quads.
     Quads,
     /// The change of the coordinate from pixel to pixel, in x and y.

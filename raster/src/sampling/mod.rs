@@ -7,6 +7,10 @@ mod fetch;
 mod lod;
 mod sample;
 
+pub(crate) use fetch::{Aspect, NO_WORDS};
+pub(crate) use lod::Detail;
+pub(crate) use sample::{decode_fetched, fetch_words, look_up};
+
 use crate::state::Sampler;
 use crate::texture::Texture;
 

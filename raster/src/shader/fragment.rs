@@ -1,9 +1,9 @@
 //! The fragment stage over lanes.
 
+use crate::counters::COUNT;
+use crate::depth_plane::ShaderDepth;
 use crate::sampling::BoundTexture;
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32};
-use crate::tile::COUNT;
-use crate::tile::ShaderDepth;
 use crate::{MAX_COLOR_ATTACHMENTS, MAX_SHADER_COUNTS, MAX_TEXTURES, MAX_VARYINGS};
 
 /// What a fragment shader may do; the tests that run before it depend on this.

@@ -15,6 +15,7 @@ mod fragment;
 mod identity;
 mod scalar;
 mod table;
+mod textures;
 mod vertex;
 
 pub(crate) use erased::{ErasedFragmentShader, ErasedVertexShader};

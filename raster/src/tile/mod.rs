@@ -22,18 +22,14 @@ use block::{BlockStage, General};
 use lean::Lean;
 
 pub(crate) use config::{DrawConfig, StencilFace, TargetConfig};
-pub(crate) use depth::ShaderDepth;
 pub(crate) use target::{ColorTile, DepthTile, TileTarget};
 
+pub(crate) use crate::counters::COUNT;
 use crate::counters::{Accesses, Counters, EventCounters, FragmentCounters, TileCounters};
 use crate::geometry::{Chunk, DepthEncoding, ShadedVertices};
 use crate::observer::BlockAccess;
 use crate::shader::{PACKETS, PacketOutput, ShaderEvents};
 use crate::simd::{F32, Lanes, SimdLevel, outlined, with_lanes};
-
-/// Whether counting is compiled in; the `uncounted` feature exists to measure
-/// what it costs.
-pub(crate) const COUNT: bool = !cfg!(feature = "uncounted");
 
 /// Counters of the tile stage for one draw.
 #[derive(Clone, Debug, Default)]

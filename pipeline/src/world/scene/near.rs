@@ -33,7 +33,7 @@ pub(super) fn derived(scene: &Scene) -> f64 {
 
 /// Least planar distance of a surface in view.
 fn nearest(scene: &Scene) -> Option<f64> {
-    let pyramid = Pyramid::new(&scene.camera, WIDEST).from_eye();
+    let pyramid = Pyramid::new(&scene.camera, WIDEST).up_to_eye();
     let (mut polygon, mut scratch): (Vec<DVec3>, _) = (Vec::new(), Vec::new());
     let mut nearest = f64::INFINITY;
     for object in &scene.objects {
@@ -65,7 +65,7 @@ mod tests {
             (1.0, 1.0),
             (1.99, 1.0),
             (0.3, 0.25),
-            (5e-324, 2.0f64.powi(-1022)),
+            (5e-324, f64::MIN_POSITIVE),
         ] {
             assert_eq!(power_of_two_up_to(x), power);
         }
@@ -85,7 +85,7 @@ mod tests {
     fn it_scales_with_the_scene() {
         let scene = builtin::build("cylinder").unwrap();
         for exponent in [-20, -3, 1, 20] {
-            let scale = 2.0f64.powi(exponent);
+            let scale = libm::exp2(f64::from(exponent));
             let placed = scene.placed(scale, DVec3::ZERO).unwrap();
             assert_eq!(derived(&placed), derived(&scene) * scale);
         }

@@ -88,7 +88,7 @@ impl Pyramid {
     }
 
     /// The same from the eye on.
-    pub(crate) fn from_eye(self) -> Self {
+    pub(crate) fn up_to_eye(self) -> Self {
         Self { near: 0.0, ..self }
     }
 

@@ -16,7 +16,7 @@ const NAMED: usize = 3;
 impl Scene {
     /// Warnings about the camera, in a picture of `size` (width, height).
     pub(crate) fn view_warnings(&self, size: [u32; 2]) -> Vec<SceneWarning> {
-        let pyramid = Pyramid::new(&self.camera, size).from_eye();
+        let pyramid = Pyramid::new(&self.camera, size).up_to_eye();
         let depths: Vec<_> = self.objects.iter().map(|o| seen(o, &pyramid)).collect();
         let hidden = self.before_near_plane(&depths);
         let coarse = self.coarse_depth(&depths);

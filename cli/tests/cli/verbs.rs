@@ -27,7 +27,8 @@ fn techniques_are_listed_with_parameters() {
         assert!(text.contains(technique["name"].as_str().unwrap()));
         for param in technique["params"].as_array().unwrap() {
             let default = &param["default"];
-            let default = default.as_str().map_or(default.to_string(), str::to_owned);
+            let number = default.as_f64().map(|x| x.to_string());
+            let default = number.unwrap_or_else(|| default.as_str().unwrap().to_owned());
             let shown = format!("{}={default}", param["name"].as_str().unwrap());
             assert!(text.contains(&shown), "{shown}");
             assert!(!param["summary"].as_str().unwrap().is_empty());

@@ -6,7 +6,7 @@
 //! function in the file of its paper and add one entry to that file's list.
 //!
 //! ```
-//! use crate::{Judgement, Lab, LabSettings, find};
+//! use gnomon_claims::{Judgement, Lab, LabSettings, find};
 //!
 //! let claim = find("paper4-table-memory")?;
 //! let finding = claim.measure(&mut Lab::new(LabSettings::default(), None))?.unwrap();

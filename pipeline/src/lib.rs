@@ -1,9 +1,10 @@
 //! Scenes, geometry and shadow techniques.
 //!
-//! From a [`scene::Scene`] (world-space meshes, lights, a camera) this crate
-//! derives what hard and soft shadow algorithms consume: edge
-//! [`adjacency`], [`silhouette`]s, infinite shadow [`volume`]s, and the f64
-//! [`oracle`] that says what the picture should have been.
+//! Seven wings, each of which knows only those before it: the [`world`] holds scenes
+//! (meshes, lights, a camera); [`geometry`] derives what shadow algorithms consume,
+//! such as silhouettes, infinite volumes and penumbra wedges; [`truth`] says in f64 what
+//! the picture should have been. What a [`technique`] is comes next, the [`parts`] that
+//! techniques share, and the [`techniques`]; [`measure`] runs and judges them.
 //!
 //! Conventions, everywhere: right-handed world, y up, triangles
 //! counter-clockwise seen from outside, column vectors, matrices named
@@ -29,7 +30,7 @@
 //! ```
 //!
 //! A [`technique`] turns a scene into commands for the emulated GPU, and
-//! [`render`] runs them:
+//! [`measure::render`] runs them:
 //!
 //! ```
 //! use gnomon_pipeline::measure::render::{self, RenderSettings};

@@ -2,7 +2,7 @@
 //! per light source, over the same draws of the scene.
 //!
 //! What they are drawn to is in [`super::targets`], what is drawn in
-//! [`super::surface_draw`], and from where in [`super::view`].
+//! `surface_draw`, and from where in [`super::view`].
 
 use glam::DVec3;
 use gnomon_raster::shader::FragmentStage;

@@ -2,7 +2,7 @@
 //! a legend.
 //!
 //! A [`gnomon_claims::chart::Chart`] is laid out once, into lines, dots, bars and
-//! text in pixels ([`layout`]); [`raster`] and [`mod@svg`] only draw those. So both files
+//! text in pixels (`layout`); `raster` and `svg` only draw those. So both files
 //! show the same.
 
 mod axis;

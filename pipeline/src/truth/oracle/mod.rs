@@ -2,7 +2,7 @@
 //!
 //! Nothing here knows of silhouettes, volumes or rasterisation: [`hard`] casts
 //! rays through a [`bvh`]; [`area`] integrates soft shadows exactly and
-//! [`sampled`] does so by rays, for a second opinion; [`plates`] is a closed
+//! [`sampled`] does so by rays, for a second opinion; [`plates`](crate::world::plates) is a closed
 //! form. [`cache`] keeps what was computed.
 
 pub mod area;

@@ -4,10 +4,10 @@
 //! line, it renumbers vertices object by object (so a solid split over several `g`
 //! groups would fall apart), it knows neither CR alone as the end of a line nor
 //! comments behind statements, and its triangulation is a fan whatever the polygon.
-//! So a scan reads the text once on its own ([`lines`], [`scan`]), points of equal
-//! coordinates become one ([`weld`]), faces are freed of corners that add nothing
-//! ([`corners`]) and cut into triangles ([`polygon`]), and tobj gets positions and
-//! triangles of one object ([`mesh`]).
+//! So a scan reads the text once on its own (`lines`, `scan`), points of equal
+//! coordinates become one (`weld`), faces are freed of corners that add nothing
+//! (`corners`) and cut into triangles (`polygon`), and tobj gets positions and
+//! triangles of one object (`mesh`).
 //!
 //! Coordinates stay in f64 until the model has its place in a scene: in f32 a model
 //! far from its origin, as geodetic coordinates are, would lose its shape.

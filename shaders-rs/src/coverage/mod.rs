@@ -17,6 +17,7 @@
 mod round;
 mod square;
 
+use crate::vector::each2;
 use fearless_simd::Simd as _;
 use gnomon_raster::math::dot3;
 use gnomon_raster::simd::each3;
@@ -157,9 +158,9 @@ impl FlatLight {
             };
         };
         let eye = [x + offset[0], y + offset[1], z + offset[2]];
-        let ends = [a, b].map(
+        let ends = each2(
             #[inline(always)]
-            |end| onto_from_afar(eye, minus(l, end, [x, y, z])),
+            |k| onto_from_afar(eye, minus(l, [a, b][k], [x, y, z])),
         );
         Projected {
             ends,
@@ -254,19 +255,19 @@ impl SphereLight {
         // Of a far light, ends as seen from the fragment: only their height over the
         // centre has the distance in it.
         let from_eye = if self.far.is_some() {
-            [&edge[0], &edge[1]].map(
+            each2(
                 #[inline(always)]
-                |end| minus(l, end, from_origin),
+                |k| minus(l, &edge[k], from_origin),
             )
         } else {
-            [&edge[0], &edge[1]].map(
+            each2(
                 #[inline(always)]
-                |end| minus(l, end, [zero; 3]),
+                |k| minus(l, &edge[k], [zero; 3]),
             )
         };
-        let [mut a, mut b] = from_eye.map(
+        let [mut a, mut b] = each2(
             #[inline(always)]
-            |p| local(frame, size, p),
+            |k| local(frame, size, from_eye[k]),
         );
         let mut below = [eye - a[2], eye - b[2]];
         if self.far.is_some() {

@@ -17,11 +17,12 @@
 mod round;
 mod square;
 
-use crate::vector::each2;
 use fearless_simd::Simd as _;
 use gnomon_raster::math::dot3;
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, Lanes, Mask, uniforms};
+
+use crate::vector::each2;
 
 /// Ends of a silhouette edge, in the coordinates of a projector.
 pub type Edge = [[f32; 3]; 2];

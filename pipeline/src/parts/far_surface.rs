@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use super::surface_vertices::SurfaceVertices;
 use super::view::View;
 use crate::world::mesh::{Mesh, narrow, widen};
 use crate::world::scene::{Object, Pyramid, clip_with};
@@ -19,61 +20,48 @@ const FAR: f64 = 16.0;
 /// Tangents that are kept over those in the picture.
 const MARGIN: f64 = 1.5;
 
-/// Vertices, six floats each: position and normal; and each of the mesh's triangles as
-/// triangles of them.
-pub(crate) struct Clipped {
-    pub(crate) data: Vec<f32>,
-    pub(crate) triangles: Vec<Vec<[u32; 3]>>,
+/// What is seen of an object, if it casts nothing and reaches too far.
+pub(crate) fn clipped(object: &Object, view: &View) -> Option<SurfaceVertices> {
+    let camera = view.camera();
+    let far = FAR * (camera.target - camera.eye).length();
+    let positions = object.mesh.positions().iter();
+    let beyond = positions.map(|p| (widen(*p) - camera.eye).length());
+    (!object.casts && beyond.fold(0.0, f64::max) > far).then(|| in_view(&object.mesh, view))
 }
 
-impl Clipped {
-    /// What is seen of an object, if it casts nothing and reaches too far.
-    pub(crate) fn of(object: &Object, view: &View) -> Option<Self> {
-        let camera = view.camera();
-        let far = FAR * (camera.target - camera.eye).length();
-        let positions = object.mesh.positions().iter();
-        let beyond = positions.map(|p| (widen(*p) - camera.eye).length());
-        (!object.casts && beyond.fold(0.0, f64::max) > far).then(|| Self::new(&object.mesh, view))
-    }
-
-    fn new(mesh: &Mesh, view: &View) -> Self {
-        let camera = view.camera();
-        let pyramid = Pyramid::wider(camera, view.size(), MARGIN);
-        let mut all = Self {
-            data: Vec::new(),
-            triangles: Vec::new(),
-        };
-        let (mut polygon, mut scratch) = (Vec::new(), Vec::new());
-        for (t, normals) in mesh.normal_triangles().iter().enumerate() {
-            let normals = normals.map(|n| widen(mesh.normals()[n as usize]));
-            let corners = mesh.corners(t);
-            polygon.clear();
-            polygon.extend([0, 1, 2].map(|k| [corners[k], normals[k]]));
-            for side in pyramid.sides() {
-                let height = |v: [DVec3; 2]| side(v[0]);
-                clip_with(&mut polygon, &mut scratch, height, |a, b, share| {
-                    [0, 1].map(|k| a[k] + (b[k] - a[k]) * share)
-                });
-            }
-            all.add(&polygon, view);
+fn in_view(mesh: &Mesh, view: &View) -> SurfaceVertices {
+    let camera = view.camera();
+    let pyramid = Pyramid::wider(camera, view.size(), MARGIN);
+    let mut all = SurfaceVertices::new();
+    let (mut polygon, mut scratch) = (Vec::new(), Vec::new());
+    for (t, normals) in mesh.normal_triangles().iter().enumerate() {
+        let normals = normals.map(|n| widen(mesh.normals()[n as usize]));
+        let corners = mesh.corners(t);
+        polygon.clear();
+        polygon.extend([0, 1, 2].map(|k| [corners[k], normals[k]]));
+        for side in pyramid.sides() {
+            let height = |v: [DVec3; 2]| side(v[0]);
+            clip_with(&mut polygon, &mut scratch, height, |a, b, share| {
+                [0, 1].map(|k| a[k] + (b[k] - a[k]) * share)
+            });
         }
-        all
+        add(&mut all, &polygon, view);
     }
+    all
+}
 
-    /// Adds a polygon as a fan round the vertex nearest to the eye, whose digits count
-    /// most.
-    fn add(&mut self, polygon: &[[DVec3; 2]], view: &View) {
-        let eye = view.camera().eye;
-        let away = |k: &usize| (polygon[*k][0] - eye).length();
-        let nearest = (0..polygon.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
-        let first = (self.data.len() / 6) as u32;
-        for k in 0..polygon.len() {
-            let [p, n] = polygon[(k + nearest.unwrap_or(0)) % polygon.len()];
-            self.data.extend(narrow(view.relative(p)));
-            self.data.extend(narrow(n));
-        }
-        let fan = 1..(polygon.len() as u32).max(2) - 1;
-        self.triangles
-            .push(fan.map(|k| [first, first + k, first + k + 1]).collect());
+/// Adds a polygon as a fan round the vertex nearest to the eye, whose digits count
+/// most.
+fn add(all: &mut SurfaceVertices, polygon: &[[DVec3; 2]], view: &View) {
+    let eye = view.camera().eye;
+    let away = |k: &usize| (polygon[*k][0] - eye).length();
+    let nearest = (0..polygon.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+    let first = all.len();
+    for k in 0..polygon.len() {
+        let [p, n] = polygon[(k + nearest.unwrap_or(0)) % polygon.len()];
+        all.data.extend(narrow(view.relative(p)));
+        all.data.extend(narrow(n));
     }
+    let fan = 1..(polygon.len() as u32).max(2) - 1;
+    all.push(fan.map(|k| [first, first + k, first + k + 1]));
 }

@@ -16,6 +16,7 @@ pub(crate) mod maps;
 pub mod passes;
 pub mod shadowed_frame;
 pub(crate) mod surface_draw;
+pub(crate) mod surface_vertices;
 pub mod targets;
 pub mod view;
 pub mod visibility;

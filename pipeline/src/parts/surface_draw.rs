@@ -13,7 +13,8 @@ use glam::DVec3;
 use gnomon_raster::state::PrimitiveState;
 use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, VertexBuffer};
 
-use super::far_surface::Clipped;
+use super::far_surface;
+use super::surface_vertices::{STRIDE, SurfaceVertices};
 use super::view::View;
 use crate::world::mesh::{narrow, widen};
 use crate::world::scene::{Material, MaterialPart, Object, Scene};
@@ -30,34 +31,30 @@ pub(crate) struct SurfaceDraw<'a> {
 impl<'a> SurfaceDraw<'a> {
     /// A draw for each material; vertices are shared.
     pub(crate) fn of_object(scene: &Scene, view: &View, object: &'a Object) -> Vec<Self> {
-        let shading = object.mesh.shading_vertices();
-        let rows = shading.positions.iter().zip(&shading.normals);
-        let clipped = Clipped::of(object, view);
-        let data = match &clipped {
-            Some(clipped) => clipped.data.clone(),
-            None => rows
-                .flat_map(|(p, n)| view.point(*p).into_iter().chain(*n))
-                .collect(),
-        };
+        let surface = far_surface::clipped(object, view);
+        let surface = surface.unwrap_or_else(|| SurfaceVertices::whole(object, view));
         let mut primitive = clamped();
         if crosses_near_plane(scene, object) {
             primitive.clip_planes.push([0.0, 0.0, 1.0, 0.0]);
         }
-        let vertices = Arc::new(VertexBuffer { data, stride: 6 });
-        let draw = |part: MaterialPart| {
-            let own = part.triangles.iter().flat_map(|&t| match &clipped {
-                Some(clipped) => clipped.triangles[t as usize].clone(),
-                None => vec![shading.triangles[t as usize]],
-            });
-            Self {
-                object,
-                material: part.material,
-                vertices: vertices.clone(),
-                indices: index_buffer(&own.collect::<Vec<_>>()),
-                primitive: primitive.clone(),
-            }
+        let indices = |part: &MaterialPart| {
+            let own = part.triangles.iter().flat_map(|&t| surface.of(t));
+            IndexBuffer::new(own.flatten().copied().collect())
         };
-        object.painted().into_iter().map(draw).collect()
+        let parts = object.painted();
+        let indices: Vec<IndexBuffer> = parts.iter().map(indices).collect();
+        let vertices = Arc::new(VertexBuffer {
+            data: surface.data,
+            stride: STRIDE,
+        });
+        let draw = |(part, indices): (MaterialPart, IndexBuffer)| Self {
+            object,
+            material: part.material,
+            vertices: vertices.clone(),
+            indices: Arc::new(indices),
+            primitive: primitive.clone(),
+        };
+        parts.into_iter().zip(indices).map(draw).collect()
     }
 
     /// Ambient light times albedo, opaque.

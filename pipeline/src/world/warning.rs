@@ -10,3 +10,12 @@ pub struct SceneWarning {
     /// For people: what, where, and what to do about it.
     pub message: String,
 }
+
+/// The first of some names, and how many more there are.
+pub(crate) fn first_few(names: &[String], shown: usize) -> String {
+    let list = names[..names.len().min(shown)].join(", ");
+    match names.len().saturating_sub(shown) {
+        0 => list,
+        more => format!("{list} and {more} more"),
+    }
+}

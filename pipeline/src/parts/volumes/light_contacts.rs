@@ -7,6 +7,7 @@ use crate::geometry::winding::mesh_winding;
 use crate::technique::Warning;
 use crate::world::adjacency::EdgeAdjacency;
 use crate::world::scene::{Object, Scene};
+use crate::world::warning::first_few;
 
 /// How many objects a message names.
 const NAMED: usize = 4;
@@ -23,16 +24,11 @@ pub(crate) fn warning(scene: &Scene, number: usize) -> Option<Warning> {
     let first = met.first()?;
     let names: Vec<String> = met
         .iter()
-        .take(NAMED)
         .map(|(how, name)| match how {
             Contact::Touches => format!("touched or cut by '{name}'"),
             Contact::Inside => format!("inside '{name}'"),
         })
         .collect();
-    let more = match met.len() - names.len() {
-        0 => String::new(),
-        n => format!(" and {n} more"),
-    };
     let consequence = match first.0 {
         Contact::Inside => "nothing outside sees its centre",
         Contact::Touches => {
@@ -44,8 +40,8 @@ pub(crate) fn warning(scene: &Scene, number: usize) -> Option<Warning> {
         code: "light-in-caster",
         count: met.len(),
         message: format!(
-            "light {number} is {}{more}: {consequence}",
-            names.join(", ")
+            "light {number} is {}: {consequence}",
+            first_few(&names, NAMED)
         ),
     })
 }

@@ -5,8 +5,6 @@ mod normals;
 
 pub use normals::Shading;
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 
 use crate::world::error::MeshError;
@@ -169,17 +167,26 @@ pub struct ShadingVertices {
 impl ShadingVertices {
     fn new(mesh: &Mesh) -> Self {
         let mut out = Self::default();
-        // Normals met so far at each position, and their vertices here.
-        let mut met: Vec<BTreeMap<u32, u32>> = vec![BTreeMap::new(); mesh.positions.len()];
-        for (corners, normals) in mesh.triangles.iter().zip(&mesh.normal_triangles) {
-            let pair = |k: usize| (corners[k], normals[k]);
-            let triangle = [0, 1, 2].map(|k| vertex_of(&mut met, mesh, pair(k), &mut out));
-            out.triangles.push(triangle);
+        let alike = first_alike(mesh);
+        let mut vertices = vec![0; alike.len()];
+        for (corner, &first) in alike.iter().enumerate() {
+            let first = first as usize;
+            if first == corner {
+                vertices[corner] = out.push(mesh, corner);
+            }
+            vertices[corner] = vertices[first];
         }
+        out.triangles = vertices
+            .chunks_exact(3)
+            .map(|v| [v[0], v[1], v[2]])
+            .collect();
         out
     }
 
-    fn push(&mut self, mesh: &Mesh, position: u32, normal: u32) -> u32 {
+    /// The vertex of a corner, counted over all triangles.
+    fn push(&mut self, mesh: &Mesh, corner: usize) -> u32 {
+        let of = |triangles: &[[u32; 3]]| triangles[corner / 3][corner % 3];
+        let (position, normal) = (of(&mesh.triangles), of(&mesh.normal_triangles));
         self.positions.push(mesh.positions[position as usize]);
         self.normals.push(mesh.normals[normal as usize]);
         self.position_index.push(position);
@@ -187,14 +194,34 @@ impl ShadingVertices {
     }
 }
 
-fn vertex_of(
-    met: &mut [BTreeMap<u32, u32>],
-    mesh: &Mesh,
-    (position, normal): (u32, u32),
-    out: &mut ShadingVertices,
-) -> u32 {
-    let known = met[position as usize].entry(normal);
-    *known.or_insert_with(|| out.push(mesh, position, normal))
+/// For each corner the first one of the same position and normal. Corners are put in
+/// buckets by position and sorted there: about linear, however many meet in one.
+fn first_alike(mesh: &Mesh) -> Vec<u32> {
+    let positions = mesh.triangles.as_flattened();
+    let normals = mesh.normal_triangles.as_flattened();
+    let mut ends = vec![0; mesh.positions.len()];
+    positions.iter().for_each(|&p| ends[p as usize] += 1);
+    let mut total = 0;
+    for end in &mut ends {
+        total += *end;
+        *end = total - *end; // where the bucket begins, until it is filled
+    }
+    let mut by_position = vec![0; positions.len()];
+    for (corner, &p) in positions.iter().enumerate() {
+        by_position[ends[p as usize]] = corner as u32;
+        ends[p as usize] += 1;
+    }
+    let mut first = vec![0; positions.len()];
+    let mut begin = 0;
+    for end in ends {
+        let bucket = &mut by_position[begin..end];
+        bucket.sort_unstable_by_key(|&c| (normals[c as usize], c));
+        for alike in bucket.chunk_by(|a, b| normals[*a as usize] == normals[*b as usize]) {
+            alike.iter().for_each(|&c| first[c as usize] = alike[0]);
+        }
+        begin = end;
+    }
+    first
 }
 
 #[cfg(test)]
@@ -221,6 +248,41 @@ mod tests {
                 vertices: 3
             }
         );
+    }
+
+    /// The obvious twin: each corner looks at all vertices so far.
+    #[test]
+    fn shading_vertices_are_in_order_of_appearance() {
+        let solids = [
+            crate::world::shape::cylinder(9, 0.5, 0.0, 1.0),
+            crate::world::shape::icosphere(2, 1.0, DVec3::ZERO),
+        ];
+        for solid in solids {
+            for shading in [
+                Shading::Flat,
+                Shading::Smooth,
+                Shading::Crease { degrees: 30.0 },
+            ] {
+                let mesh = solid.clone().into_mesh(shading).unwrap();
+                let mut met: Vec<(u32, u32)> = Vec::new();
+                let mut vertex = |pair| {
+                    met.iter().position(|m| *m == pair).unwrap_or_else(|| {
+                        met.push(pair);
+                        met.len() - 1
+                    }) as u32
+                };
+                let both = mesh.triangles().iter().zip(mesh.normal_triangles());
+                let expected: Vec<[u32; 3]> = both
+                    .map(|(p, n)| [0, 1, 2].map(|k| vertex((p[k], n[k]))))
+                    .collect();
+                let draw = mesh.shading_vertices();
+                assert_eq!(draw.triangles, expected, "{shading:?}");
+                for (k, (p, n)) in met.into_iter().enumerate() {
+                    assert_eq!(draw.position_index[k], p);
+                    assert_eq!(draw.normals[k], mesh.normals()[n as usize]);
+                }
+            }
+        }
     }
 
     #[test]

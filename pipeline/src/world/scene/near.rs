@@ -6,8 +6,6 @@
 //! It is rounded down to a power of two, so that a scene in units of another power
 //! of two has the same depths to the bit, and one that moves has few near planes.
 
-use glam::DVec3;
-
 use super::{Pyramid, Scene};
 
 /// Of the distance of the nearest surface.
@@ -34,18 +32,8 @@ pub(super) fn derived(scene: &Scene) -> f64 {
 /// Least planar distance of a surface in view.
 fn nearest(scene: &Scene) -> Option<f64> {
     let pyramid = Pyramid::new(&scene.camera, WIDEST).up_to_eye();
-    let (mut polygon, mut scratch): (Vec<DVec3>, _) = (Vec::new(), Vec::new());
-    let mut nearest = f64::INFINITY;
-    for object in &scene.objects {
-        for triangle in 0..object.mesh.triangles().len() {
-            polygon.clear();
-            polygon.extend(object.mesh.corners(triangle));
-            pyramid.clip(&mut polygon, &mut scratch);
-            let depths = polygon.iter().map(|p| pyramid.depth(*p));
-            nearest = depths.fold(nearest, f64::min);
-        }
-    }
-    nearest.is_finite().then_some(nearest)
+    let depths = scene.objects.iter().filter_map(|o| pyramid.depths(&o.mesh));
+    depths.map(|[nearest, _]| nearest).reduce(f64::min)
 }
 
 /// The largest power of two that is not above a normal positive number.
@@ -58,6 +46,7 @@ fn power_of_two_up_to(x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::world::scene::builtin;
+    use glam::DVec3;
 
     #[test]
     fn powers_of_two_are_not_above() {

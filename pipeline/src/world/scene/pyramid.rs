@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Camera;
+use crate::world::mesh::Mesh;
 
 /// Keeps of a convex polygon where `side` is not negative; `side` must be affine.
 /// `scratch` is overwritten.
@@ -99,19 +100,75 @@ impl Pyramid {
 
     /// Keeps what of a convex polygon is seen.
     pub(crate) fn clip(&self, polygon: &mut Vec<DVec3>, scratch: &mut Vec<DVec3>) {
-        clip(polygon, scratch, |p| self.depth(p) - self.near);
-        for side in self.sides {
+        for side in self.sides() {
             if polygon.is_empty() {
                 return;
             }
-            clip(polygon, scratch, |p| side.dot(p - self.eye));
+            clip(polygon, scratch, side);
         }
+    }
+
+    /// Least and largest planar distance from the eye of what of a mesh is seen; `None`
+    /// where nothing is. Only triangles that a plane crosses are clipped.
+    pub(crate) fn depths(&self, mesh: &Mesh) -> Option<[f64; 2]> {
+        let vertices = (0..mesh.positions().len() as u32).map(|i| self.outcode(mesh.position(i)));
+        let codes: Vec<u8> = vertices.collect();
+        let (mut polygon, mut scratch) = (Vec::new(), Vec::new());
+        let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (t, corners) in mesh.triangles().iter().enumerate() {
+            let [a, b, c] = corners.map(|i| codes[i as usize]);
+            if a & b & c != 0 {
+                continue;
+            }
+            polygon.clear();
+            polygon.extend(mesh.corners(t));
+            if a | b | c != 0 {
+                self.clip(&mut polygon, &mut scratch);
+            }
+            for p in &polygon {
+                let depth = self.depth(*p);
+                nearest = nearest.min(depth);
+                farthest = farthest.max(depth);
+            }
+        }
+        (nearest <= farthest).then_some([nearest, farthest])
+    }
+
+    /// Bit k: the point is outside of plane k.
+    fn outcode(&self, p: DVec3) -> u8 {
+        let outside = self.sides().map(|side| side(p) < 0.0);
+        (0..5).map(|k| u8::from(outside[k]) << k).sum()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::scene::builtin;
+
+    /// The same as clipping each triangle, whether planes cross it or not.
+    #[test]
+    fn depths_are_those_of_clipped_triangles() {
+        let mut crossed = 0;
+        for entry in builtin::SCENES {
+            let scene = entry.build();
+            let seen = Pyramid::new(&scene.camera, [160, 120]);
+            for object in &scene.objects {
+                let (mut all, mut scratch) = (Vec::new(), Vec::new());
+                for t in 0..object.mesh.triangles().len() {
+                    let mut polygon = object.mesh.corners(t).to_vec();
+                    seen.clip(&mut polygon, &mut scratch);
+                    crossed += usize::from(polygon.len() > 3);
+                    all.extend(polygon.iter().map(|p| seen.depth(*p)));
+                }
+                let least = all.iter().copied().reduce(f64::min);
+                let most = all.iter().copied().reduce(f64::max);
+                let expected = least.zip(most).map(|(a, b)| [a, b]);
+                assert_eq!(seen.depths(&object.mesh), expected, "{}", entry.name);
+            }
+        }
+        assert!(crossed > 100, "{crossed}");
+    }
 
     #[test]
     fn clipping_keeps_what_is_on_the_side() {

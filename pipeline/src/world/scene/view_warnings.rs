@@ -1,9 +1,8 @@
 //! What a camera cannot show of its scene: objects before its near plane, and
 //! casters that a depth buffer cannot tell from what is behind them.
 
-use glam::DVec3;
-
 use super::{Object, Pyramid, Scene, SceneWarning};
+use crate::world::warning::first_few;
 
 /// Largest step of depth over the size of a caster there.
 const COARSEST: f64 = 1.0 / 32.0;
@@ -17,7 +16,11 @@ impl Scene {
     /// Warnings about the camera, in a picture of `size` (width, height).
     pub(crate) fn view_warnings(&self, size: [u32; 2]) -> Vec<SceneWarning> {
         let pyramid = Pyramid::new(&self.camera, size).up_to_eye();
-        let depths: Vec<_> = self.objects.iter().map(|o| seen(o, &pyramid)).collect();
+        let depths: Vec<_> = self
+            .objects
+            .iter()
+            .map(|o| pyramid.depths(&o.mesh))
+            .collect();
         let hidden = self.before_near_plane(&depths);
         let coarse = self.coarse_depth(&depths);
         hidden.into_iter().chain(coarse).collect()
@@ -32,7 +35,7 @@ impl Scene {
         let (names, nearest) = hidden.fold(
             (Vec::new(), f64::INFINITY),
             |(mut names, least), (object, [nearest, _])| {
-                names.push(object.name.as_str());
+                names.push(format!("'{}'", object.name));
                 (names, least.min(nearest))
             },
         );
@@ -42,7 +45,7 @@ impl Scene {
             message: format!(
                 "objects lie wholly before the camera's near plane at {near} and are not drawn: \
                  {}; they begin {nearest:.3e} from the eye: set near to less, or leave it out",
-                named(&names)
+                first_few(&names, NAMED)
             ),
         })
     }
@@ -75,35 +78,10 @@ impl Scene {
     }
 }
 
-/// Least and largest planar distance from the eye of what of an object is in view.
-fn seen(object: &Object, pyramid: &Pyramid) -> Option<[f64; 2]> {
-    let (mut polygon, mut scratch): (Vec<DVec3>, _) = (Vec::new(), Vec::new());
-    let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for triangle in 0..object.mesh.triangles().len() {
-        polygon.clear();
-        polygon.extend(object.mesh.corners(triangle));
-        pyramid.clip(&mut polygon, &mut scratch);
-        for p in &polygon {
-            let depth = pyramid.depth(*p);
-            nearest = nearest.min(depth);
-            farthest = farthest.max(depth);
-        }
-    }
-    (nearest <= farthest).then_some([nearest, farthest])
-}
-
 /// Largest extent of an object.
 fn size(object: &Object) -> Option<f64> {
     let (low, high) = object.mesh.bounds()?;
     Some((high - low).max_element())
-}
-
-fn named(names: &[&str]) -> String {
-    let list: Vec<String> = names.iter().take(NAMED).map(|n| format!("'{n}'")).collect();
-    match names.len().saturating_sub(NAMED) {
-        0 => list.join(", "),
-        more => format!("{} and {more} more", list.join(", ")),
-    }
 }
 
 #[cfg(test)]

@@ -3,9 +3,7 @@
 
 use crate::format::D24_MAX;
 use crate::simd::{F32, I32, LANES, Lanes, each4, round_to_i32};
-
-/// Packets of a block.
-const PACKETS: usize = 4;
+use crate::texture::PACKETS;
 
 /// D24 depth planes carry this many fractional bits.
 pub(crate) const D24_FRACTION: u32 = 5;

@@ -2,11 +2,12 @@
 //! everything is compiled for the level.
 
 use super::Interpolation;
-use super::fragment::{Fragment, FragmentOutputs, FragmentShader, PACKETS, ShadeBlock};
+use super::fragment::{Fragment, FragmentOutputs, FragmentShader, ShadeBlock};
 use super::identity::{Named, ShaderIdentity, Uniforms};
 use super::vertex::{Vertex, VertexBatch, VertexOutput, VertexShader};
 use crate::MAX_VARYINGS;
 use crate::simd::{F32, LANES, Lanes, SimdLevel, with_lanes};
+use crate::texture::PACKETS;
 
 pub(crate) trait ErasedVertexShader: Send + Sync {
     fn varyings(&self) -> &[Interpolation];

@@ -4,6 +4,7 @@ use crate::counters::COUNT;
 use crate::depth_plane::ShaderDepth;
 use crate::sampling::BoundTexture;
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32};
+use crate::texture::PACKETS;
 use crate::{MAX_COLOR_ATTACHMENTS, MAX_SHADER_COUNTS, MAX_TEXTURES, MAX_VARYINGS};
 
 /// What a fragment shader may do; the tests that run before it depend on this.
@@ -38,9 +39,6 @@ pub trait FragmentShader: Send + Sync {
     /// it calls.
     fn shade<L: Lanes>(&self, l: L, fragment: &mut Fragment<'_, L>);
 }
-
-/// Packets of an 8×8 block.
-pub(crate) const PACKETS: usize = 4;
 
 /// `base + gx·ix + gy·iy` of each varying over one 8×8 block; index
 /// [`MAX_VARYINGS`] is 1/w.

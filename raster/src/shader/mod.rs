@@ -20,7 +20,7 @@ mod vertex;
 
 pub(crate) use erased::{ErasedFragmentShader, ErasedVertexShader};
 pub use fragment::{Fragment, FragmentOutputs, FragmentShader};
-pub(crate) use fragment::{PACKETS, PacketOutput, ShadeBlock, ShaderEvents, VaryingPlanes};
+pub(crate) use fragment::{PacketOutput, ShadeBlock, ShaderEvents, VaryingPlanes};
 pub use identity::{Named, ShaderIdentity, UniformError, UniformReader, UniformWriter, Uniforms};
 pub use scalar::{
     ScalarFragment, ScalarFragmentOutput, ScalarVertex, ScalarVertexOutput, per_fragment,

@@ -6,10 +6,12 @@
 //! *contiguous* in memory, and a target splits into disjoint `&mut` slices, one
 //! a tile, without a lock or a line of `unsafe`.
 
-use crate::simd::{I32, Lanes, U32};
+use crate::simd::{I32, LANES, Lanes, U32};
 
 /// Side of a storage block in pixels.
 pub const BLOCK: u32 = 8;
+/// Packets of lanes in a block.
+pub(crate) const PACKETS: usize = (BLOCK * BLOCK) as usize / LANES;
 
 /// log₂ of the largest superblock's side in blocks.
 const MAX_ORDER: u32 = 4;

@@ -7,7 +7,7 @@ mod plane;
 mod resource;
 
 pub use layout::BLOCK;
-pub(crate) use layout::Layout;
+pub(crate) use layout::{Layout, PACKETS};
 pub(crate) use packed::{check_packed, pack};
 pub(crate) use plane::{Block, Block4, ColorBlocks, DepthPlane, HIZ_STALE, Plane};
 pub use resource::{

@@ -8,10 +8,11 @@ use super::target::TileTarget;
 use super::{COUNT, ChunkRef, TileStageCounters, depth_test, output, shade, stencil};
 use crate::geometry::Triangle;
 use crate::observer::BlockAccess;
-use crate::shader::{PACKETS, PacketOutput};
+use crate::shader::PacketOutput;
 use crate::simd::{I32, LANES, Lanes, Mask, SimdLevel, outlined};
 use crate::state::CompareFunction;
 use crate::texture::Block;
+use crate::texture::PACKETS;
 
 /// What the triangles of one bin share.
 pub(super) struct Env<'a, 't> {

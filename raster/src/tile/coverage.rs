@@ -11,8 +11,8 @@ use super::depth::{Decision, Decisions, DepthBlock, GroupDepth};
 use super::target::rect_mask;
 
 use crate::geometry::Triangle;
-use crate::shader::PACKETS;
 use crate::simd::{I32, LANES, Lanes, each3, outlined, round_to_i32};
+use crate::texture::PACKETS;
 use crate::texture::layout::{morton, morton_lanes};
 
 const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];

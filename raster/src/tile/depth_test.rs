@@ -3,9 +3,9 @@
 use super::config::DrawConfig;
 use super::target::DepthTile;
 use super::{COUNT, TileStageCounters, block, depth};
-use crate::shader::PACKETS;
 use crate::simd::{I32, Lanes, Mask, each4};
 use crate::state::CompareFunction;
+use crate::texture::PACKETS;
 use crate::texture::{Block, HIZ_STALE};
 
 /// Pixels whose depth, of packet k `z(k)`, compares as asked with the stored one: of all

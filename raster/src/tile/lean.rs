@@ -8,10 +8,10 @@ use super::depth::{Decision, DepthBlock};
 use super::target::DepthTile;
 use super::{TileStageCounters, depth_test, output, stencil};
 use crate::geometry::Triangle;
-use crate::shader::PACKETS;
 use crate::simd::{I32, Lanes, outlined};
 use crate::state::CompareFunction;
 use crate::texture::Block;
+use crate::texture::PACKETS;
 
 /// With a fragment shader, or without.
 pub(super) struct Lean<const SHADED: bool>;

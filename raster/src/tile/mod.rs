@@ -28,8 +28,9 @@ pub(crate) use crate::counters::COUNT;
 use crate::counters::{Accesses, Counters, EventCounters, FragmentCounters, TileCounters};
 use crate::geometry::{Chunk, DepthEncoding, ShadedVertices};
 use crate::observer::BlockAccess;
-use crate::shader::{PACKETS, PacketOutput, ShaderEvents};
+use crate::shader::{PacketOutput, ShaderEvents};
 use crate::simd::{F32, Lanes, SimdLevel, outlined, with_lanes};
+use crate::texture::PACKETS;
 
 /// Counters of the tile stage for one draw.
 #[derive(Clone, Debug, Default)]

@@ -5,9 +5,10 @@ use super::depth::DepthBlock;
 use crate::MAX_VARYINGS;
 use crate::format;
 use crate::geometry::Triangle;
-use crate::shader::{PACKETS, ShadeBlock, VaryingPlanes};
+use crate::shader::{ShadeBlock, VaryingPlanes};
 use crate::simd::{F32, F64, I32, LANES, Lanes, each3, outlined};
 use crate::texture::Block;
+use crate::texture::PACKETS;
 
 const IX: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const IY: [i32; LANES] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];

@@ -3,8 +3,9 @@
 use super::Writer;
 use super::blend::{Operands, combine, weigh};
 use crate::format::lanes::{float_or_nan_from_half, half_from_float};
-use crate::shader::{PACKETS, PacketOutput};
+use crate::shader::PacketOutput;
 use crate::simd::{F32, LANES, Lanes, U16, U32};
+use crate::texture::PACKETS;
 use crate::tile::COUNT;
 
 /// How floats are stored.
@@ -35,7 +36,7 @@ impl Stored for u32 {
 
     #[inline(always)]
     fn store<L: Lanes>(v: F32<L>, words: &mut [u32; LANES], live: u16) -> u16 {
-        super::store32(v.canonical_nan().raw_bits(), words, live)
+        super::store32(v.canonical_nan().raw_bits(), words, live).bits()
     }
 }
 

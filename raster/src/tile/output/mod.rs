@@ -15,8 +15,9 @@ use super::config::TargetConfig;
 use super::target::ColorTile;
 use super::{COUNT, TileStageCounters};
 use crate::format::Format;
-use crate::shader::{PACKETS, PacketOutput};
+use crate::shader::PacketOutput;
 use crate::simd::{F32, LANES, Lanes, Mask, Mask16, U16, U32, each4, outlined};
+use crate::texture::PACKETS;
 
 /// Writes the outputs of the fragments of `live` to every colour target.
 #[inline(always)]
@@ -130,7 +131,7 @@ impl<L: Lanes> Writer<'_, L> {
                 let (words, live) = (words(block, k), (live >> (16 * k)) as u16);
                 match op {
                     Some(op) => self.rgba8_plain(words, s, op, live),
-                    None => self.store(words, s, live),
+                    None => store32(s, words, live),
                 }
             },
         );
@@ -176,7 +177,7 @@ impl<L: Lanes> Writer<'_, L> {
                 let mut same = live;
                 for c in 0..4 {
                     let new = U32::splat(l, texel[c]);
-                    same &= store32(new, words(&mut channels[c], k), live);
+                    same &= store32(new, words(&mut channels[c], k), live).bits();
                 }
                 same
             },
@@ -206,7 +207,7 @@ impl<L: Lanes> Writer<'_, L> {
             |w, k, live| {
                 let src = F32::from_array(w.l, &out[k].color[w.attachment][0]);
                 let bits = w.uint_bits(src, out[k].integers[w.attachment], live);
-                store32(bits, words(block, k), live)
+                store32(bits, words(block, k), live).bits()
             },
         );
     }
@@ -259,27 +260,18 @@ impl<L: Lanes> Writer<'_, L> {
             self.c.events.blend_saturated[self.attachment] += u64::from(lanes);
         }
     }
-
-    /// Masked store of whole words; gives the lanes that stay what they are.
-    #[inline(always)]
-    fn store(&mut self, words: &mut [u32; LANES], new: U32<L>, live: u16) -> Mask<L> {
-        let old = U32::from_array(self.l, words);
-        let live = Mask::from_bits(self.l, live);
-        live.select_u32(new, old).store(words);
-        new.eq(old) & live
-    }
 }
 
 /// Masked store of words; gives the lanes that stay what they are.
 #[inline(always)]
-fn store32<L: Lanes>(new: U32<L>, words: &mut [u32; LANES], live: u16) -> u16 {
+fn store32<L: Lanes>(new: U32<L>, words: &mut [u32; LANES], live: u16) -> Mask<L> {
     let old = U32::from_array(new.l, words);
     let mask = Mask::from_bits(new.l, live);
     mask.select_u32(new, old).store(words);
-    (new.eq(old) & mask).bits()
+    new.eq(old) & mask
 }
 
-/// As [`store32`].
+/// As [`store32`], their bits.
 #[inline(always)]
 fn store16<L: Lanes>(new: U16<L>, words: &mut [u16; LANES], live: u16) -> u16 {
     let old = U16::from_array(new.l, words);

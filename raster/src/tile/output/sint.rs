@@ -2,9 +2,10 @@
 
 use super::Writer;
 use crate::format::lanes::sint16_from_float;
-use crate::shader::{PACKETS, PacketOutput};
+use crate::shader::PacketOutput;
 use crate::simd::{F32, I32, LANES, Lanes, U16};
 use crate::state::{BlendComponent, BlendFactor};
+use crate::texture::PACKETS;
 use crate::tile::COUNT;
 
 impl<L: Lanes> Writer<'_, L> {

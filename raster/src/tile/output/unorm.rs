@@ -4,12 +4,13 @@
 use fearless_simd::{Bytes as _, SimdBase as _, SimdInt as _, SimdMask as _, u8x64};
 
 use super::blend::{Operands, combine, weigh};
-use super::{Channels, Writer};
+use super::{Channels, Writer, store32};
 use crate::format::lanes::unorm8_from_unit;
 use crate::format::unorm8_from_f32;
-use crate::shader::{PACKETS, PacketOutput};
+use crate::shader::PacketOutput;
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U16, U32, each4};
 use crate::state::{BlendOperation, ColorWrites};
+use crate::texture::PACKETS;
 use crate::tile::COUNT;
 
 /// How texels of one or two bytes are stored.
@@ -167,7 +168,7 @@ impl<L: Lanes> Writer<'_, L> {
                 let s = self.packed_bytes(src, live);
                 return match op {
                     Some(op) => self.rgba8_plain(words, s, op, live),
-                    None => self.store(words, s, live),
+                    None => store32(s, words, live),
                 };
             }
         }
@@ -188,7 +189,7 @@ impl<L: Lanes> Writer<'_, L> {
                 }
             },
         );
-        self.store(words, pack(&kept), live)
+        store32(pack(&kept), words, live)
     }
 
     /// Blending whose factors are all One, or that has none: byte arithmetic.
@@ -215,7 +216,7 @@ impl<L: Lanes> Writer<'_, L> {
                 self.saturated((limited & spread(live)).count_ones());
             }
         }
-        self.store(words, U32::new(self.l, new.bitcast()), live)
+        store32(U32::new(self.l, new.bitcast()), words, live)
     }
 
     /// The formulas of `state::blend`, channel by channel.

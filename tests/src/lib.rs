@@ -11,5 +11,6 @@ pub mod npy;
 pub mod parallel;
 pub mod random;
 pub mod shrink;
+pub mod sources;
 pub mod tricov;
 pub mod twin;

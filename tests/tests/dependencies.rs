@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use gnomon_tests::sources::{below, read, root};
 use toml::{Table, Value};
 
 /// Crate, its folder, and the workspace crates that it may need.
@@ -57,14 +58,6 @@ const REPORTING: &[&str] = &[
     "tiny-skia",
 ];
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-fn read(path: &Path) -> String {
-    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
-
 fn manifest(folder: &str) -> Table {
     let path = root().join(folder).join("Cargo.toml");
     let text = read(&path);
@@ -103,22 +96,6 @@ fn needs(manifest: &Table) -> Vec<String> {
         .collect()
 }
 
-/// Files of Rust below `folder`.
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-    for entry in entries {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            found.extend(sources(&path));
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
-
 /// Whether a file is a module that its parent declares under `#[cfg(test)]`.
 fn is_for_tests(path: &Path) -> bool {
     let parent = path.with_file_name("mod.rs");
@@ -135,7 +112,7 @@ fn is_for_tests(path: &Path) -> bool {
 /// Lines below `folder` whose code, comments left out, is one to find.
 fn lines_where(folder: &Path, wanted: impl Fn(&str) -> bool) -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
-    for path in sources(folder) {
+    for path in below(folder) {
         for (number, line) in read(&path).lines().enumerate() {
             let code = line.split("//").next().unwrap_or_default();
             if wanted(code) {

@@ -5,8 +5,9 @@
 //! tests left out.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
+
+use gnomon_tests::sources::{below, read, root};
 
 /// Pipeline's wings. Each may use those above it.
 const WINGS: [&str; 7] = [
@@ -29,25 +30,16 @@ type Module = Vec<String>;
 type Uses = BTreeMap<(String, String), PathBuf>;
 
 fn src(folder: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("..")
-        .join(folder)
-        .join("src")
+    root().join(folder).join("src")
 }
 
+/// Sources without files and folders of tests.
 fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-    for entry in entries {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() && !path.ends_with("tests") {
-            found.extend(sources(&path));
-        } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("tests.rs") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
+    let is_test = |name: &std::ffi::OsStr| name == "tests" || name == "tests.rs";
+    let inside = |path: &PathBuf| path.strip_prefix(folder).expect("below it").to_owned();
+    let mut all = below(folder);
+    all.retain(|path| !inside(path).iter().any(is_test));
+    all
 }
 
 fn module(root: &Path, file: &Path) -> Module {
@@ -68,7 +60,7 @@ fn module(root: &Path, file: &Path) -> Module {
 
 /// Code of a file up to its unit tests, without comments.
 fn code(file: &Path) -> String {
-    let text = fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    let text = read(file);
     let lines = text.lines().take_while(|l| l.trim() != "#[cfg(test)]");
     let bare = lines.map(|l| l.split("//").next().unwrap_or_default());
     bare.collect::<Vec<_>>().join("\n")

@@ -225,15 +225,14 @@ fn open(path: &Path) -> io::Result<File> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::scratch::Scratch;
     use std::fs;
 
-    struct Folder(PathBuf);
+    struct Folder(Scratch);
 
     impl Folder {
         fn new(name: &str) -> Self {
-            let id = std::process::id();
-            let path = std::env::temp_dir().join(format!("gnomon-files-{name}-{id}"));
-            let _ = fs::remove_dir_all(&path);
+            let path = Scratch::new(&format!("files-{name}"));
             fs::create_dir_all(path.join("scene/parts")).unwrap();
             fs::write(path.join("out.txt"), "secret").unwrap();
             fs::write(path.join("scene/in.txt"), "text").unwrap();
@@ -242,12 +241,6 @@ mod tests {
 
         fn scene(&self, outside: Outside) -> SceneFolder {
             SceneFolder::new(self.0.join("scene"), outside)
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
         }
     }
 

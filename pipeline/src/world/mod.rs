@@ -13,3 +13,6 @@ pub mod plates;
 pub mod scene;
 pub mod shape;
 pub mod warning;
+
+#[cfg(test)]
+pub(crate) mod scratch;

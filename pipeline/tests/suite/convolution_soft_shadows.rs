@@ -1,6 +1,7 @@
 //! Convolution soft shadows against closed forms and the exact oracle, and against
 //! themselves where nothing may change a bit.
 
+use crate::drawing::drawn_on;
 use glam::DVec3;
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::Params;
@@ -23,14 +24,7 @@ fn soft(scene: &Scene, set: &[&str]) -> Rendered {
 }
 
 fn with(scene: &Scene, set: &[&str], gpu: GpuConfig) -> Rendered {
-    let technique = find("convolution-soft-shadows").unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: SIZE,
-        gpu,
-        repeat: 1,
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn_on(scene, "convolution-soft-shadows", set, SIZE, gpu)
 }
 
 /// Pixels of the floor y = 0 that nothing hides, and where they are.

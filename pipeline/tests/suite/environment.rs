@@ -1,6 +1,7 @@
 //! Scenes lit by environments: every technique draws them, the same bits however
 //! they are executed, nearer to the reference the more lights there are.
 
+use crate::drawing::drawn_on;
 use gnomon_pipeline::measure::comparison::{
     Directions, EnvironmentReference, RadianceScore, Reference, ReferenceKind,
 };
@@ -31,14 +32,7 @@ fn lights(count: usize) -> FitSettings {
 }
 
 fn drawn(scene: &Scene, technique: &str, set: &[&str], gpu: GpuConfig) -> Rendered {
-    let technique = find(technique).unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: [64, 48],
-        gpu,
-        repeat: 1,
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn_on(scene, technique, set, [64, 48], gpu)
 }
 
 fn scored(

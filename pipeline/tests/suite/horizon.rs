@@ -1,5 +1,6 @@
 //! Visibility limited to the light before a facet's plane, against the oracle.
 
+use crate::drawing::drawn;
 use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::Params;
@@ -14,13 +15,7 @@ const BOTH: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"]
 const MAPPED: [&str; 3] = ["pcss", "convolution-soft-shadows", "shadow-maps-n"];
 
 fn picture(scene: &Scene, name: &str, set: &[&str]) -> Rendered {
-    let technique = find(name).unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: SIZE,
-        ..RenderSettings::default()
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn(scene, name, set, SIZE)
 }
 
 fn error_of(scene: &Scene, name: &str, set: &[&str]) -> VisibilityError {

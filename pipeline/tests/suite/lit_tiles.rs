@@ -1,10 +1,9 @@
 //! Look-ups that are left out in tiles of the screen to which a light adds nothing:
 //! the same bits, less work.
 
+use crate::drawing;
 use glam::DVec3;
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::world::environment::FitSettings;
 use gnomon_pipeline::world::light::{HardLight, Light, LightShape};
 use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
@@ -19,13 +18,8 @@ const TECHNIQUES: [(&str, &[&str]); 5] = [
 ];
 
 fn drawn(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
-    let technique = find(technique).unwrap();
-    let params = Params::parse(technique, [set, &["map-size=64"]].concat()).unwrap();
-    let settings = RenderSettings {
-        size: [100, 72],
-        ..RenderSettings::default()
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    let set = [set, &["map-size=64"]].concat();
+    drawing::drawn(scene, technique, &set, [100, 72])
 }
 
 /// Fragments shaded by passes of light `light` that look shadows up.

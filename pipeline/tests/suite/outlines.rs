@@ -1,9 +1,8 @@
 //! Silhouettes combined outline by outline instead of caster by caster.
 
+use crate::drawing::drawn;
 use glam::DVec3;
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::truth::oracle::area::VisibilityImage;
 use gnomon_pipeline::world::mesh::{Mesh, Shading};
@@ -13,13 +12,7 @@ use gnomon_pipeline::world::shape;
 const SIZE: [u32; 2] = [120, 80];
 
 fn optimised(scene: &Scene, set: &[&str]) -> Rendered {
-    let technique = find("soft-shadow-volumes-optimised").unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: SIZE,
-        ..RenderSettings::default()
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn(scene, "soft-shadow-volumes-optimised", set, SIZE)
 }
 
 fn rmse(scene: &Scene, set: &[&str]) -> f64 {

@@ -2,6 +2,7 @@
 //! truth: same bits under z-pass and z-fail, right counts at every pixel that
 //! is not near an edge, invisible skipping.
 
+use crate::drawing::drawn_on;
 use std::path::PathBuf;
 
 use gnomon_pipeline::geometry::caster::Caster;
@@ -22,23 +23,11 @@ const SIZE: [u32; 2] = [160, 128];
 const EYE_IN_SHADOW: [&str; 2] = ["adversarial", "adversarial-eye-in-shadow"];
 
 fn draw_sized(scene: &Scene, name: &str, params: &[&str], size: [u32; 2]) -> Rendered {
-    let technique = techniques::find(name).unwrap();
-    let params = Params::parse(technique, params).unwrap();
     let gpu = GpuConfig {
         threads: 2,
         ..GpuConfig::default()
     };
-    render(
-        scene,
-        technique,
-        &params,
-        &RenderSettings {
-            size,
-            gpu,
-            repeat: 1,
-        },
-    )
-    .unwrap()
+    drawn_on(scene, name, params, size, gpu)
 }
 
 fn draw(scene: &Scene, params: &[&str]) -> Rendered {

@@ -1,9 +1,8 @@
 //! Soft shadow volumes against the exact oracle and the closed form, and against
 //! themselves where nothing may change a bit.
 
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::techniques::find;
+use crate::drawing::drawn_on;
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
 use gnomon_pipeline::world::scene::{Scene, builtin};
@@ -25,14 +24,7 @@ fn optimised(scene: &Scene, set: &[&str]) -> Rendered {
 }
 
 fn render_by(name: &str, scene: &Scene, set: &[&str], gpu: GpuConfig) -> Rendered {
-    let technique = find(name).unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: SIZE,
-        gpu,
-        repeat: 1,
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn_on(scene, name, set, SIZE, gpu)
 }
 
 fn soft(scene: &Scene, set: &[&str]) -> Rendered {

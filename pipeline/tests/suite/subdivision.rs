@@ -1,11 +1,10 @@
 //! Silhouette edges in m collinear pieces: nothing changes but what each piece is
 //! rounded to. How far each back end drifts is plotted by the example `subdivision`.
 
+use crate::drawing::drawn;
 use std::sync::Arc;
 
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::world::mesh::Shading;
 use gnomon_pipeline::world::scene::{Scene, builtin};
 use gnomon_pipeline::world::shape::bevelled_plate_in_pieces;
@@ -19,13 +18,7 @@ fn plates(pieces: u32) -> Scene {
 }
 
 fn picture(pieces: u32, technique: &str, set: &[&str]) -> Rendered {
-    let technique = find(technique).unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: [120, 80],
-        ..RenderSettings::default()
-    };
-    render(&plates(pieces), technique, &params, &settings).unwrap()
+    drawn(&plates(pieces), technique, set, [120, 80])
 }
 
 /// The largest change of visibility from whole edges to `pieces`.

@@ -1,13 +1,12 @@
 //! Cameras and light views in scenes of any unit, lights far away, low or among walls,
 //! and planes far larger than what is seen.
 
+use crate::drawing::drawn;
 use std::path::Path;
 
 use glam::DVec3;
 use gnomon_pipeline::measure::comparison::{Aligned, Reference, ReferenceKind};
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 use gnomon_pipeline::world::light::{Light, LightShape};
@@ -20,13 +19,7 @@ fn parsed(text: &str) -> Scene {
 }
 
 fn shown(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
-    let technique = find(technique).unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: SIZE,
-        ..RenderSettings::default()
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn(scene, technique, set, SIZE)
 }
 
 /// A scene with the exact visibility of its light.
@@ -373,16 +366,11 @@ fn low_sun(degrees: f64, turn: f64) -> Scene {
                 translate = [2.0, 0.8, -0.6]\n[[objects]]\n\
                 mesh.sphere = { subdivisions = 3, radius = 0.5 }\ntranslate = [-1.2, 0.3, 1.6]\n";
     let mut scene = parsed(&format!("{text}{more}"));
-    let [sin, cos] = [degrees, turn].map(|d| libm_sin_cos(d.to_radians()));
-    let (high, flat) = (sin.0, sin.1);
+    let [(high, flat), (z, x)] = [degrees, turn].map(|d| libm::sincos(d.to_radians()));
     scene.lights[0].shape = LightShape::Directional {
-        towards: DVec3::new(cos.1 * flat, high, cos.0 * flat),
+        towards: DVec3::new(x * flat, high, z * flat),
     };
     scene
-}
-
-fn libm_sin_cos(x: f64) -> (f64, f64) {
-    (libm::sin(x), libm::cos(x))
 }
 
 #[test]

@@ -2,11 +2,10 @@
 //! triangles without area, hundreds of solids above each other, lights in casters,
 //! lights of no size and lights at the horizon. Each against the exact truth.
 
+use crate::drawing::drawn;
 use glam::DVec3;
 use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-use gnomon_pipeline::technique::Params;
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::truth::metrics::visibility::{ErrorSummary, VisibilityError};
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 use gnomon_pipeline::world::light::{Light, LightShape};
@@ -24,13 +23,7 @@ const OPTIMISED: &str = "soft-shadow-volumes-optimised";
 const ALL_SOFT: [&str; 4] = [WEDGES, RESTRUCTURED, SOFT, OPTIMISED];
 
 fn draw(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {
-    let technique = find(technique).unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: SIZE,
-        ..RenderSettings::default()
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn(scene, technique, set, SIZE)
 }
 
 /// Errors over all pixels that show what the truth's rays meet, and in the umbra.

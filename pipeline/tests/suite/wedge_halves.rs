@@ -1,11 +1,11 @@
 //! Wedge halves, each culled by depth and stencil and drawn to one buffer: the
 //! same bits as whole wedges and as no culling, for half the colour traffic.
 
+use crate::drawing::drawn;
 use glam::DVec3;
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::measure::wedge_work::WedgeWork;
-use gnomon_pipeline::technique::{Params, PassRole};
-use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::technique::PassRole;
 use gnomon_pipeline::world::light::{Light, LightShape};
 use gnomon_pipeline::world::scene::{Scene, builtin};
 use gnomon_raster::Counters;
@@ -13,13 +13,7 @@ use gnomon_raster::Counters;
 const SIZE: [u32; 2] = [120, 80];
 
 fn optimised(scene: &Scene, set: &[&str]) -> Rendered {
-    let technique = find("soft-shadow-volumes-optimised").unwrap();
-    let params = Params::parse(technique, set).unwrap();
-    let settings = RenderSettings {
-        size: SIZE,
-        ..RenderSettings::default()
-    };
-    render(scene, technique, &params, &settings).unwrap()
+    drawn(scene, "soft-shadow-volumes-optimised", set, SIZE)
 }
 
 fn wedges(picture: &Rendered) -> Counters {

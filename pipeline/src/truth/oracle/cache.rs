@@ -263,30 +263,21 @@ fn decode(
 mod tests {
     use super::*;
     use crate::world::scene::builtin;
+    use crate::world::scratch::Scratch;
 
     const SIZE: [u32; 2] = [24, 16];
 
-    /// A folder of this test alone, removed at its end.
-    struct Folder(PathBuf);
+    struct Folder(Scratch);
 
     impl Folder {
         fn new(test: &str) -> Self {
-            let name = format!("gnomon-oracle-cache-{}-{test}", std::process::id());
-            let path = std::env::temp_dir().join(name);
-            let _ = fs::remove_dir_all(&path); // left over from a crash
-            Self(path)
+            Self(Scratch::new(&format!("oracle-cache-{test}")))
         }
 
         fn files(&self) -> Vec<String> {
-            let entries = fs::read_dir(&self.0).unwrap();
+            let entries = fs::read_dir(&*self.0).unwrap();
             let name = |e: std::io::Result<fs::DirEntry>| e.unwrap().file_name().into_string();
             entries.map(|e| name(e).unwrap()).collect()
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
         }
     }
 
@@ -301,7 +292,7 @@ mod tests {
     #[test]
     fn the_second_time_it_is_read_with_the_same_bits() {
         let folder = Folder::new("read");
-        let cache = OracleCache::new(&folder.0);
+        let cache = OracleCache::new(&*folder.0);
         let first = get(&cache, &scene());
         let never = || panic!("nothing is computed the second time");
         let second = cache.visibility(&scene(), 0, SIZE, &never).unwrap();
@@ -314,7 +305,7 @@ mod tests {
     #[test]
     fn images_by_rays_are_kept_apart() {
         let folder = Folder::new("rays");
-        let cache = OracleCache::new(&folder.0);
+        let cache = OracleCache::new(&*folder.0);
         let exact = get(&cache, &scene()).image;
         let by = |rays| cache.sampled(&scene(), 0, SIZE, rays, &|| {}).unwrap();
         let (first, again, other) = (by((4, 7)), by((4, 7)), by((4, 8)));
@@ -329,7 +320,7 @@ mod tests {
     #[test]
     fn damaged_and_foreign_files_are_ignored_and_replaced() {
         let folder = Folder::new("damaged");
-        let cache = OracleCache::new(&folder.0);
+        let cache = OracleCache::new(&*folder.0);
         let truth = get(&cache, &scene()).image;
         let path = cache.path(&scene(), &scene().lights[0].shape, SIZE);
         let whole = fs::read(&path).unwrap();
@@ -365,11 +356,11 @@ mod tests {
     #[test]
     fn a_cache_that_cannot_be_written_only_warns() {
         let folder = Folder::new("blocked");
-        fs::write(&folder.0, "a file where the folder should be").unwrap();
-        let found = get(&OracleCache::new(&folder.0), &scene());
+        fs::write(&*folder.0, "a file where the folder should be").unwrap();
+        let found = get(&OracleCache::new(&*folder.0), &scene());
         assert!(found.image.values.contains(&1.0));
         let written = |w: &CacheWarning| matches!(w, CacheWarning::NotWritten { .. });
         assert!(found.warnings.iter().any(written), "{:?}", found.warnings);
-        fs::remove_file(&folder.0).unwrap();
+        fs::remove_file(&*folder.0).unwrap();
     }
 }

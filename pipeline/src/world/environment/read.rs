@@ -110,19 +110,16 @@ fn six(folder: &Path, name: &str, within: Option<&SceneFolder>) -> Result<Read, 
 mod tests {
     use super::*;
     use crate::world::environment::{Environment, MapSettings};
+    use crate::world::scratch::Scratch;
     use image::{ImageBuffer, Rgb};
     use std::fs;
     use std::path::PathBuf;
 
-    struct Folder(PathBuf);
+    struct Folder(Scratch);
 
     impl Folder {
         fn new(name: &str) -> Self {
-            let id = std::process::id();
-            let folder = std::env::temp_dir().join(format!("gnomon-environment-{name}-{id}"));
-            let _ = fs::remove_dir_all(&folder);
-            fs::create_dir_all(&folder).unwrap();
-            Self(folder)
+            Self(Scratch::made(&format!("environment-{name}")))
         }
 
         fn save(
@@ -135,12 +132,6 @@ mod tests {
             let picture = ImageBuffer::from_fn(w, h, |x, y| Rgb(texel(x, y)));
             picture.save(&path).unwrap();
             path
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
         }
     }
 

@@ -108,7 +108,10 @@ fn observed(frame: &Frame, config: GpuConfig) -> Stream {
     let mut gpu = Gpu::new(config).unwrap();
     gpu.load(&frame.recording).unwrap();
     let mut stream = Stream::default();
-    let wants = Wants { depth_ranges: true };
+    let wants = Wants {
+        depth_ranges: true,
+        ..Wants::default()
+    };
     let list = &frame.recording.list;
     let report = gpu.submit_observed(list, wants, &mut stream).unwrap();
     assert_eq!(stream.passes, list.passes.len());
@@ -216,7 +219,10 @@ fn skipping_follows_from_unskipped_events_in_every_technique() {
         };
         let mut gpu = Gpu::new(with(false)).unwrap();
         gpu.load(&frame.recording).unwrap();
-        let wants = Wants { depth_ranges: true };
+        let wants = Wants {
+            depth_ranges: true,
+            ..Wants::default()
+        };
         gpu.submit_observed(list, wants, &mut what_if).unwrap();
         for (pass, found) in skipped.passes.iter().zip(&what_if.found) {
             for (draw, found) in pass.draws.iter().zip(found) {
@@ -293,7 +299,10 @@ fn large_pass() {
     gpu.load(&frame.recording).unwrap();
     let before = peak_memory();
     let mut weighed = Weighed::default();
-    let wants = Wants { depth_ranges: true };
+    let wants = Wants {
+        depth_ranges: true,
+        ..Wants::default()
+    };
     gpu.submit_observed(&frame.recording.list, wants, &mut weighed)
         .unwrap();
     println!("{} MiB of accesses", weighed.all / MIB);

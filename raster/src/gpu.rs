@@ -240,7 +240,7 @@ impl Gpu {
     pub fn submit_observed(
         &mut self,
         list: &CommandList,
-        wants: Wants,
+        wants: Wants<'_>,
         observer: &mut dyn AccessObserver,
     ) -> Result<SubmitReport, Error> {
         execute::submit(self, list, Some((wants, observer)))

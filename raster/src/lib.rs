@@ -94,7 +94,7 @@ pub use execute::worker_threads;
 pub use format::Format;
 pub use gpu::{DrawReport, Gpu, GpuConfig, PassReport, SubmitReport};
 pub use limits::*;
-pub use observer::{AccessBatch, AccessObserver, BlockAccess, Ended, Wants};
+pub use observer::*;
 pub use recording::{RecordedTexture, Recording};
 pub use simd::{F32, I32, LANES, Lanes, Mask, SimdLevel, U32};
 pub use state::{AddressMode, FilterMode, Sampler};

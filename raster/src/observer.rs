@@ -5,6 +5,7 @@
 //! same on every machine, however they are cut.
 
 use crate::MAX_COLOR_ATTACHMENTS;
+use crate::format::Format;
 use crate::gpu::PassReport;
 
 /// What one primitive did to one 8×8 block. Bit `8·row + column` is a pixel.
@@ -44,6 +45,9 @@ pub struct BlockAccess {
     /// Smallest and largest depth that the block held before, over its pixels inside
     /// the image; `[0; 2]` where [`Self::span`] is.
     pub stored: [u32; 2],
+    /// What [`Wants::witness`] made of the block after the event; 0 without one, and where
+    /// the event wrote nothing.
+    pub witness: u64,
     /// The primitive faces the viewer.
     pub front: bool,
     /// The zmin/zmax entry was read.
@@ -53,7 +57,7 @@ pub struct BlockAccess {
 }
 
 /// Events wait in memory by the hundred thousand.
-const _: () = assert!(size_of::<BlockAccess>() == 184);
+const _: () = assert!(size_of::<BlockAccess>() == 192);
 
 /// Where fragments ended that were not written: disjoint parts of
 /// [`BlockAccess::covered`].
@@ -84,11 +88,119 @@ impl BlockAccess {
 }
 
 /// What an observer wants to be told beside what costs nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wants {
+#[derive(Clone, Copy, Default)]
+pub struct Wants<'a> {
     /// [`BlockAccess::span`] and [`BlockAccess::stored`], for which blocks are looked at
     /// that no test needs.
     pub depth_ranges: bool,
+    /// [`AccessBatch::texels`].
+    pub texels: bool,
+    /// [`AccessBatch::outputs`] and [`AccessBatch::values`].
+    pub outputs: bool,
+    /// [`AccessBatch::fragments`] of this pixel (column, row).
+    pub probe: Option<[u32; 2]>,
+    /// [`BlockAccess::witness`].
+    pub witness: Option<&'a dyn BlockWitness>,
+}
+
+/// Looks at a block after each event that wrote to it, and says something of it in 64
+/// bits: a hash, or what a codec would make of it. Called by workers.
+pub trait BlockWitness: Sync {
+    /// What is to be said.
+    fn after(&self, block: &BlockView<'_>) -> u64;
+}
+
+/// The stored bits of an 8×8 block of all attachments, pixels in the order of masks.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct BlockView<'a> {
+    /// Block column and row.
+    pub block: [u16; 2],
+    /// Pixels inside the image.
+    pub inside: u64,
+    /// Encoded depth and stencil.
+    pub depth_stencil: Option<(&'a [u32; 64], &'a [u8; 64])>,
+    /// Raw channels by attachment, up to the number of attachments.
+    pub color: &'a [[[u32; 64]; 4]],
+    /// Their formats.
+    pub formats: &'a [Format],
+}
+
+/// Texels of one 8×8 block of a texture that the fragments of one event read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TexelAccess {
+    /// Index of the event in [`AccessBatch::blocks`].
+    pub event: u32,
+    /// Slot of the draw.
+    pub slot: u8,
+    /// Mip level.
+    pub mip: u8,
+    /// Slice or cube face.
+    pub layer: u16,
+    /// Block column and row in the image of that level.
+    pub block: [u16; 2],
+    /// Texels that were read; bit `8·row + column`.
+    pub texels: u64,
+    /// How many reads that were; their sum over a draw's slot is
+    /// [`crate::Traffic::read_accesses`].
+    pub taps: u32,
+}
+
+/// Where a fragment ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FragmentEnd {
+    /// Its block was thrown away by zmin/zmax.
+    Hiz,
+    /// At the depth bounds test.
+    Bounds,
+    /// At the stencil test.
+    Stencil,
+    /// At the depth test.
+    Depth,
+    /// Discarded by the shader.
+    Discarded,
+    /// Passed everything.
+    #[default]
+    Written,
+}
+
+/// What became of one fragment of the probed pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FragmentRecord {
+    /// Index of its event in [`AccessBatch::blocks`], which tells draw, primitive, piece
+    /// and facing.
+    pub event: u32,
+    /// Where it ended.
+    pub end: FragmentEnd,
+    /// Its depth as it would be stored; `None` without depth attachment, and where a
+    /// shader that comes before the tests, and writes depth, discarded it.
+    pub depth: Option<u32>,
+    /// Stored depth before and after; zeros without depth attachment.
+    pub stored_depth: [u32; 2],
+    /// Stored stencil before and after; zeros without depth attachment.
+    pub stencil: [u8; 2],
+    /// What the shader gave each attachment, the bits of floats or integers; `None`
+    /// where it was not run.
+    pub source: Option<[[u32; 4]; MAX_COLOR_ATTACHMENTS]>,
+    /// Raw channels of each attachment before and after; zeros where there is none.
+    pub color: [[[u32; 4]; 2]; MAX_COLOR_ATTACHMENTS],
+}
+
+/// What the shader gave the fragments of an event.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ShadedBlock {
+    /// Index of the event in [`AccessBatch::blocks`].
+    pub event: u32,
+    /// Fragments that it was run for.
+    pub shaded: u64,
+    /// Those that it discarded.
+    pub discarded: u64,
+    /// Those whose colour is an integer, by attachment.
+    pub integers: [u64; MAX_COLOR_ATTACHMENTS],
+    /// Where their values begin in [`AccessBatch::values`]: for each fragment that was
+    /// shaded and not discarded, in the order of masks, four channels of each attachment,
+    /// then the depth where the shader writes it, as bits.
+    pub first: u32,
 }
 
 /// Some accesses of a render pass.
@@ -98,13 +210,35 @@ pub struct AccessBatch<'a> {
     /// Ordered by draw, primitive, piece, block row, block column; all of them after
     /// those of the batch before.
     pub blocks: &'a [BlockAccess],
+    /// Ordered by event, slot, level, layer, block row, block column; empty where
+    /// [`Wants::texels`] is not set.
+    pub texels: &'a [TexelAccess],
+    /// Ordered by event; empty where [`Wants::probe`] is not set.
+    pub fragments: &'a [FragmentRecord],
+    /// Ordered by event; empty where [`Wants::outputs`] is not set. Shaders of one colour
+    /// are not run and have none.
+    pub outputs: &'a [ShadedBlock],
+    /// What `outputs` refer to.
+    pub values: &'a [u32],
 }
 
 impl<'a> AccessBatch<'a> {
     /// A batch of `blocks`, to feed an observer by hand.
     #[must_use]
     pub fn new(blocks: &'a [BlockAccess]) -> Self {
-        Self { blocks }
+        Self {
+            blocks,
+            texels: &[],
+            fragments: &[],
+            outputs: &[],
+            values: &[],
+        }
+    }
+
+    /// The same with texels.
+    #[must_use]
+    pub fn with_texels(self, texels: &'a [TexelAccess]) -> Self {
+        Self { texels, ..self }
     }
 }
 

@@ -65,7 +65,10 @@ fn run_with(case: &TwinCase, config: GpuConfig, observed: bool) -> Result<Outcom
     };
     let mut collector = Collector::default();
     let report = if observed {
-        let wants = Wants { depth_ranges: true };
+        let wants = Wants {
+            depth_ranges: true,
+            ..Wants::default()
+        };
         gpu.submit_observed(&list, wants, &mut collector)?
     } else {
         gpu.submit(&list)?

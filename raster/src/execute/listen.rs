@@ -14,14 +14,14 @@ const ACCESSES: u64 = 1 << 18;
 
 /// An observer of one pass, and the accesses that it has not seen yet.
 pub(super) struct Listener<'a> {
-    pub(super) wants: Wants,
+    pub(super) wants: Wants<'a>,
     observer: &'a mut dyn AccessObserver,
     pass: usize,
     blocks: Vec<BlockAccess>,
 }
 
 impl<'a> Listener<'a> {
-    pub(super) fn new(wants: Wants, observer: &'a mut dyn AccessObserver, pass: usize) -> Self {
+    pub(super) fn new(wants: Wants<'a>, observer: &'a mut dyn AccessObserver, pass: usize) -> Self {
         Self {
             wants,
             observer,

@@ -24,7 +24,7 @@ use crate::observer::{AccessObserver, Wants};
 pub(crate) fn submit(
     gpu: &mut Gpu,
     list: &CommandList,
-    observer: Option<(Wants, &mut dyn AccessObserver)>,
+    observer: Option<(Wants<'_>, &mut dyn AccessObserver)>,
 ) -> Result<SubmitReport, Error> {
     list.passes
         .iter()
@@ -45,7 +45,7 @@ pub(crate) fn submit(
 fn passes(
     gpu: &mut Gpu,
     list: &CommandList,
-    mut observer: Option<(Wants, &mut dyn AccessObserver)>,
+    mut observer: Option<(Wants<'_>, &mut dyn AccessObserver)>,
 ) -> Result<SubmitReport, Error> {
     let mut report = SubmitReport::default();
     for (number, pass) in list.passes.iter().enumerate() {

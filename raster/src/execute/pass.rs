@@ -79,7 +79,7 @@ impl<'a> Executor<'a> {
         gpu: &'a Gpu,
         pass: &'a RenderPass,
         lent: &Lent,
-        wants: Wants,
+        wants: Wants<'_>,
         recycled: &'a mut Recycled,
     ) -> Self {
         let target = Target {

@@ -58,6 +58,29 @@ impl<V: VertexShader + 'static> From<V> for VertexStage {
 #[derive(Clone)]
 pub struct FragmentStage(pub(crate) Arc<dyn ErasedFragmentShader>);
 
+impl FragmentStage {
+    /// What its shader may do.
+    #[must_use]
+    pub fn outputs(&self) -> FragmentOutputs {
+        self.0.outputs()
+    }
+
+    /// The colour of attachment 0, where every fragment has the same
+    /// ([`FragmentShader::constant`]).
+    #[must_use]
+    pub fn constant(&self) -> Option<[f32; 4]> {
+        self.0.constant()
+    }
+}
+
+impl VertexStage {
+    /// How each varying is interpolated.
+    #[must_use]
+    pub fn varyings(&self) -> &[Interpolation] {
+        self.0.varyings()
+    }
+}
+
 impl<F: FragmentShader + 'static> From<F> for FragmentStage {
     fn from(shader: F) -> Self {
         Self(Arc::new(shader))

@@ -120,10 +120,26 @@ pub struct BlockView<'a> {
     pub inside: u64,
     /// Encoded depth and stencil.
     pub depth_stencil: Option<(&'a [u32; 64], &'a [u8; 64])>,
-    /// Raw channels by attachment, up to the number of attachments.
-    pub color: &'a [[[u32; 64]; 4]],
+    /// The blocks of the colour attachments, in order.
+    pub color: &'a [ColorBlock<'a>],
     /// Their formats.
     pub formats: &'a [Format],
+}
+
+/// The bits of a block of a colour attachment as they are stored, pixels in the order of
+/// masks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorBlock<'a> {
+    /// R8Unorm.
+    B8(&'a [u8; 64]),
+    /// Rg8Unorm (red low), R16Sint, R16Float.
+    B16(&'a [u16; 64]),
+    /// Rgba8Unorm (red low), R32Float, R32Uint.
+    B32(&'a [u32; 64]),
+    /// Rgba16Float, one channel after the other.
+    B16x4(&'a [[u16; 64]; 4]),
+    /// Rgba32Float, one channel after the other.
+    B32x4(&'a [[u32; 64]; 4]),
 }
 
 /// Texels of one 8×8 block of a texture that the fragments of one event read.

@@ -4,9 +4,9 @@
 //! than a batch of them is ever in memory, and the batches one after the other are the
 //! same on every machine, however they are cut.
 
-use crate::MAX_COLOR_ATTACHMENTS;
 use crate::format::Format;
 use crate::gpu::PassReport;
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_VARYINGS};
 
 /// What one primitive did to one 8×8 block. Bit `8·row + column` is a pixel.
 ///
@@ -180,7 +180,8 @@ pub enum FragmentEnd {
     Written,
 }
 
-/// What became of one fragment of the probed pixel.
+/// What became of one fragment of the probed pixel. Each covered fragment is one, those
+/// that zmin/zmax threw away too, and several primitives of a draw are several.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FragmentRecord {
     /// Index of its event in [`AccessBatch::blocks`], which tells draw, primitive, piece
@@ -189,14 +190,18 @@ pub struct FragmentRecord {
     /// Where it ended.
     pub end: FragmentEnd,
     /// Its depth as it would be stored; `None` without depth attachment, and where a
-    /// shader that comes before the tests, and writes depth, discarded it.
+    /// shader that writes depth discarded it.
     pub depth: Option<u32>,
     /// Stored depth before and after; zeros without depth attachment.
     pub stored_depth: [u32; 2],
     /// Stored stencil before and after; zeros without depth attachment.
     pub stencil: [u8; 2],
-    /// What the shader gave each attachment, the bits of floats or integers; `None`
-    /// where it was not run.
+    /// Its varyings, the bits of floats; `None` where the shader was not run, and zeros
+    /// for those that the draw lacks.
+    pub varyings: Option<[u32; MAX_VARYINGS]>,
+    /// What the shader gave each attachment, the bits of floats (of a NaN the canonical
+    /// ones) or integers; `None` where there is no shader, or the fragment did not get to
+    /// it, or was discarded.
     pub source: Option<[[u32; 4]; MAX_COLOR_ATTACHMENTS]>,
     /// Raw channels of each attachment before and after; zeros where there is none.
     pub color: [[[u32; 4]; 2]; MAX_COLOR_ATTACHMENTS],
@@ -215,7 +220,7 @@ pub struct ShadedBlock {
     pub integers: [u64; MAX_COLOR_ATTACHMENTS],
     /// Where their values begin in [`AccessBatch::values`]: for each fragment that was
     /// shaded and not discarded, in the order of masks, four channels of each attachment,
-    /// then the depth where the shader writes it, as bits.
+    /// then the depth where the shader writes it, as bits: of a NaN the canonical ones.
     pub first: u32,
 }
 

@@ -3,6 +3,8 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+mod difference;
 mod shape;
 
+pub use difference::{Place, StateDifference, compare_states};
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};

@@ -4,7 +4,10 @@
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
 mod difference;
+mod error;
+mod format;
 mod shape;
 
 pub use difference::{Place, StateDifference, compare_states};
+pub use error::TraceError;
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};

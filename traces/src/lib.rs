@@ -6,8 +6,14 @@
 mod difference;
 mod error;
 mod format;
+mod hashes;
+mod prefix;
+mod profile;
 mod shape;
+mod witness;
 
-pub use difference::{Place, StateDifference, compare_states};
+pub use difference::*;
 pub use error::TraceError;
+pub use hashes::DrawHashes;
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
+pub use witness::Witness;

@@ -23,12 +23,8 @@ struct Positions {
 impl VertexShader for Positions {
     #[inline(always)]
     fn shade<L: Lanes>(&self, _: L, v: &mut Vertex<'_, L>) {
-        v.set_position([
-            v.attribute(0),
-            v.attribute(1),
-            v.attribute(2),
-            v.attribute(3),
-        ]);
+        let [x, y] = [v.attribute(0) * self.scale, v.attribute(1) * self.scale];
+        v.set_position([x, y, v.attribute(2), v.attribute(3)]);
     }
 }
 uniforms!(Positions { scale });

@@ -3,6 +3,9 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+pub mod profile;
 mod shape;
+pub mod witness;
 
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
+pub use witness::Witness;

@@ -8,9 +8,9 @@ mod error;
 mod format;
 mod hashes;
 mod prefix;
-mod profile;
+pub mod profile;
 mod shape;
-mod witness;
+pub mod witness;
 
 pub use difference::*;
 pub use error::TraceError;

@@ -101,7 +101,7 @@ fn vertices(draw: &Draw, primitive: u32) -> (u32, Vec<u32>) {
 /// Stops where the fragment comes, then in its shader: the next one that is run.
 fn commands(f: &FragmentEvent, is_run: bool, level: &str) -> Vec<String> {
     let mut list = vec![
-        "break gnomon_raster::tile::listen::reach_probed_fragment".to_owned(),
+        "break reach_probed_fragment".to_owned(),
         format!("ignore 1 {}", f.number),
         "run".to_owned(),
     ];
@@ -110,6 +110,7 @@ fn commands(f: &FragmentEvent, is_run: bool, level: &str) -> Vec<String> {
         "only a shader discards"
     );
     if is_run {
+        list.push("delete 1".to_owned());
         list.push(format!("tbreak shade<{level}>"));
         list.push(format!("ignore 2 {}", f.packets_before));
         list.push("continue".to_owned());

@@ -9,6 +9,7 @@ mod format;
 mod hashes;
 mod prefix;
 pub mod profile;
+pub mod history;
 mod shape;
 pub mod witness;
 

@@ -131,6 +131,8 @@ pub enum Error {
         at: usize,
         vertices: usize,
     },
+    #[error("vertex {vertex} is beyond the {vertices} vertices of the buffer")]
+    VertexOutOfRange { vertex: u32, vertices: usize },
     #[error("execution tile of {given} pixels is not supported; valid are 16, 32, 64, 128")]
     TileSize { given: u32 },
     #[error("{given} threads cannot be started: {reason}")]

@@ -4,9 +4,9 @@
 //! than a batch of them is ever in memory, and the batches one after the other are the
 //! same on every machine, however they are cut.
 
-use crate::MAX_COLOR_ATTACHMENTS;
 use crate::format::Format;
 use crate::gpu::PassReport;
+use crate::{MAX_COLOR_ATTACHMENTS, MAX_VARYINGS};
 
 /// What one primitive did to one 8×8 block. Bit `8·row + column` is a pixel.
 ///
@@ -120,10 +120,26 @@ pub struct BlockView<'a> {
     pub inside: u64,
     /// Encoded depth and stencil.
     pub depth_stencil: Option<(&'a [u32; 64], &'a [u8; 64])>,
-    /// Raw channels by attachment, up to the number of attachments.
-    pub color: &'a [[[u32; 64]; 4]],
+    /// The blocks of the colour attachments, in order.
+    pub color: &'a [ColorBlock<'a>],
     /// Their formats.
     pub formats: &'a [Format],
+}
+
+/// The bits of a block of a colour attachment as they are stored, pixels in the order of
+/// masks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorBlock<'a> {
+    /// R8Unorm.
+    B8(&'a [u8; 64]),
+    /// Rg8Unorm (red low), R16Sint, R16Float.
+    B16(&'a [u16; 64]),
+    /// Rgba8Unorm (red low), R32Float, R32Uint.
+    B32(&'a [u32; 64]),
+    /// Rgba16Float, one channel after the other.
+    B16x4(&'a [[u16; 64]; 4]),
+    /// Rgba32Float, one channel after the other.
+    B32x4(&'a [[u32; 64]; 4]),
 }
 
 /// Texels of one 8×8 block of a texture that the fragments of one event read.
@@ -164,7 +180,8 @@ pub enum FragmentEnd {
     Written,
 }
 
-/// What became of one fragment of the probed pixel.
+/// What became of one fragment of the probed pixel. Each covered fragment is one, those
+/// that zmin/zmax threw away too, and several primitives of a draw are several.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FragmentRecord {
     /// Index of its event in [`AccessBatch::blocks`], which tells draw, primitive, piece
@@ -173,14 +190,18 @@ pub struct FragmentRecord {
     /// Where it ended.
     pub end: FragmentEnd,
     /// Its depth as it would be stored; `None` without depth attachment, and where a
-    /// shader that comes before the tests, and writes depth, discarded it.
+    /// shader that writes depth discarded it.
     pub depth: Option<u32>,
     /// Stored depth before and after; zeros without depth attachment.
     pub stored_depth: [u32; 2],
     /// Stored stencil before and after; zeros without depth attachment.
     pub stencil: [u8; 2],
-    /// What the shader gave each attachment, the bits of floats or integers; `None`
-    /// where it was not run.
+    /// Its varyings, the bits of floats; `None` where the shader was not run, and zeros
+    /// for those that the draw lacks.
+    pub varyings: Option<[u32; MAX_VARYINGS]>,
+    /// What the shader gave each attachment, the bits of floats (of a NaN the canonical
+    /// ones) or integers; `None` where there is no shader, or the fragment did not get to
+    /// it, or was discarded.
     pub source: Option<[[u32; 4]; MAX_COLOR_ATTACHMENTS]>,
     /// Raw channels of each attachment before and after; zeros where there is none.
     pub color: [[[u32; 4]; 2]; MAX_COLOR_ATTACHMENTS],
@@ -199,7 +220,7 @@ pub struct ShadedBlock {
     pub integers: [u64; MAX_COLOR_ATTACHMENTS],
     /// Where their values begin in [`AccessBatch::values`]: for each fragment that was
     /// shaded and not discarded, in the order of masks, four channels of each attachment,
-    /// then the depth where the shader writes it, as bits.
+    /// then the depth where the shader writes it, as bits: of a NaN the canonical ones.
     pub first: u32,
 }
 

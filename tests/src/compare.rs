@@ -105,7 +105,7 @@ fn first<T: std::fmt::Debug + PartialEq>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::twin::PassOutcome;
+    use crate::twin::{EventDetails, PassOutcome};
     use gnomon_raster::{ClientTraffic, Counters};
 
     fn outcome() -> Outcome {
@@ -113,6 +113,7 @@ mod tests {
             draws: vec![Counters::default()],
             clear: ClientTraffic::default(),
             events: Vec::new(),
+            details: EventDetails::default(),
         };
         Outcome {
             color: vec![vec![[1, 2, 3, 4]; 6]],

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use gnomon_raster::{
-    AccessBatch, AccessObserver, BlockAccess, ColorAttachment, CommandList, DepthStencilAttachment,
-    Draw, Error, Gpu, GpuConfig, IndexBuffer, RenderPass, RenderPipeline, Subresource,
+    AccessBatch, AccessObserver, BlockAccess, BlockView, BlockWitness, ColorAttachment, ColorBlock,
+    CommandList, DepthStencilAttachment, Draw, Error, Format, FragmentRecord, Gpu, GpuConfig,
+    IndexBuffer, Recording, RenderPass, RenderPipeline, ShadedBlock, Subresource, TexelAccess,
     TextureBinding, TextureDescriptor, TextureId, VertexBuffer, Wants,
 };
 
 use crate::twin::{
-    Outcome, PassOutcome, TextureSource, TwinCase, TwinDraw, TwinPass, TwinTexture, VertexSource,
-    depth_image,
+    BlockHash, EventDetails, Outcome, PassOutcome, TextureSource, TwinCase, TwinDraw, TwinPass,
+    TwinTexture, VertexSource, depth_image,
 };
 
 const WHOLE: Subresource = Subresource { mip: 0, layer: 0 };
@@ -22,18 +23,71 @@ struct Targets {
     read: Vec<TextureId>,
 }
 
-/// Collects the accesses of each pass.
+/// Collects the accesses of each pass, numbered through.
 #[derive(Default)]
 struct Collector {
-    passes: Vec<Vec<BlockAccess>>,
+    passes: Vec<(Vec<BlockAccess>, EventDetails)>,
 }
 
 impl AccessObserver for Collector {
     fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
         if self.passes.len() <= pass {
-            self.passes.resize(pass + 1, Vec::new());
+            self.passes.resize(pass + 1, Default::default());
         }
-        self.passes[pass].extend_from_slice(batch.blocks);
+        let (blocks, d) = &mut self.passes[pass];
+        let (events, values) = (blocks.len() as u32, d.values.len() as u32);
+        blocks.extend_from_slice(batch.blocks);
+        d.texels.extend(batch.texels.iter().map(|t| TexelAccess {
+            event: t.event + events,
+            ..*t
+        }));
+        d.fragments
+            .extend(batch.fragments.iter().map(|f| FragmentRecord {
+                event: f.event + events,
+                ..*f
+            }));
+        d.outputs.extend(batch.outputs.iter().map(|o| ShadedBlock {
+            event: o.event + events,
+            first: o.first + values,
+            ..*o
+        }));
+        d.values.extend_from_slice(batch.values);
+    }
+}
+
+/// Hashes blocks as the twin does.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct HashWitness;
+
+impl BlockWitness for HashWitness {
+    fn after(&self, view: &BlockView<'_>) -> u64 {
+        let mut hash = BlockHash::default();
+        for pixel in (0..64).filter(|p| view.inside >> p & 1 != 0) {
+            if let Some((depth, stencil)) = view.depth_stencil {
+                hash.word(depth[pixel]);
+                hash.word(stencil[pixel].into());
+            }
+            for (block, format) in view.color.iter().zip(view.formats) {
+                let all = channels(block, *format, pixel);
+                all.into_iter().for_each(|c| hash.word(c));
+            }
+        }
+        hash.0
+    }
+}
+
+/// The channels of a pixel, taken out of what is stored.
+fn channels(block: &ColorBlock<'_>, format: Format, pixel: usize) -> [u32; 4] {
+    match (block, format) {
+        (ColorBlock::B16(v), Format::Rg8Unorm) => {
+            [u32::from(v[pixel] & 0xff), u32::from(v[pixel] >> 8), 0, 0]
+        }
+        (ColorBlock::B32(v), Format::Rgba8Unorm) => [0, 8, 16, 24].map(|s| v[pixel] >> s & 0xff),
+        (ColorBlock::B8(v), _) => [v[pixel].into(), 0, 0, 0],
+        (ColorBlock::B16(v), _) => [v[pixel].into(), 0, 0, 0],
+        (ColorBlock::B32(v), _) => [v[pixel], 0, 0, 0],
+        (ColorBlock::B16x4(v), _) => v.map(|c| c[pixel].into()),
+        (ColorBlock::B32x4(v), _) => v.map(|c| c[pixel]),
     }
 }
 
@@ -42,7 +96,7 @@ impl AccessObserver for Collector {
 /// # Errors
 /// What the GPU refuses.
 pub fn run(case: &TwinCase, config: GpuConfig) -> Result<Outcome, Error> {
-    run_with(case, config, false)
+    run_with(case, config, None)
 }
 
 /// Runs a case with an observer, so that events are filled in.
@@ -50,10 +104,33 @@ pub fn run(case: &TwinCase, config: GpuConfig) -> Result<Outcome, Error> {
 /// # Errors
 /// What the GPU refuses.
 pub fn run_observed(case: &TwinCase, config: GpuConfig) -> Result<Outcome, Error> {
-    run_with(case, config, true)
+    let wants = Wants {
+        depth_ranges: true,
+        ..Wants::default()
+    };
+    run_with(case, config, Some(wants))
 }
 
-fn run_with(case: &TwinCase, config: GpuConfig, observed: bool) -> Result<Outcome, Error> {
+/// Runs a case with an observer who wants all that there is, of pixel `probe`.
+///
+/// # Errors
+/// What the GPU refuses.
+pub fn run_probed(case: &TwinCase, config: GpuConfig, probe: [u32; 2]) -> Result<Outcome, Error> {
+    let wants = Wants {
+        depth_ranges: true,
+        texels: true,
+        outputs: true,
+        probe: Some(probe),
+        witness: Some(&HashWitness),
+    };
+    run_with(case, config, Some(wants))
+}
+
+fn run_with(
+    case: &TwinCase,
+    config: GpuConfig,
+    wants: Option<Wants<'_>>,
+) -> Result<Outcome, Error> {
     let mut gpu = Gpu::new(config)?;
     let targets = upload(&mut gpu, case)?;
     let list = CommandList {
@@ -64,24 +141,22 @@ fn run_with(case: &TwinCase, config: GpuConfig, observed: bool) -> Result<Outcom
             .collect(),
     };
     let mut collector = Collector::default();
-    let report = if observed {
-        let wants = Wants {
-            depth_ranges: true,
-            ..Wants::default()
-        };
-        gpu.submit_observed(&list, wants, &mut collector)?
-    } else {
-        gpu.submit(&list)?
+    let report = match wants {
+        Some(wants) => gpu.submit_observed(&list, wants, &mut collector)?,
+        None => gpu.submit(&list)?,
     };
-    collector.passes.resize(case.passes.len(), Vec::new());
+    collector
+        .passes
+        .resize(case.passes.len(), Default::default());
     let passes = report
         .passes
         .into_iter()
         .zip(collector.passes)
-        .map(|(p, events)| PassOutcome {
+        .map(|(p, (events, details))| PassOutcome {
             draws: p.draws.iter().map(|d| d.counters).collect(),
             clear: p.clear,
             events,
+            details,
         })
         .collect();
     download(&gpu, &targets, passes)
@@ -108,9 +183,23 @@ pub fn run_in_pieces(case: &TwinCase, config: GpuConfig) -> Result<Outcome, Erro
             draws: p.draws.iter().map(|d| d.counters).collect(),
             clear: p.clear,
             events: Vec::new(),
+            details: EventDetails::default(),
         }));
     }
     download(&gpu, &targets, passes)
+}
+
+/// A case as a recording, without outputs.
+///
+/// # Errors
+/// What the GPU refuses.
+pub fn recording(case: &TwinCase, config: GpuConfig) -> Result<Recording, Error> {
+    let mut gpu = Gpu::new(config)?;
+    let targets = upload(&mut gpu, case)?;
+    let mut recording = gpu.save()?;
+    let passes = case.passes.iter();
+    recording.list.passes = passes.map(|p| render_pass(p, &targets)).collect();
+    Ok(recording)
 }
 
 fn upload(gpu: &mut Gpu, case: &TwinCase) -> Result<Targets, Error> {

@@ -3,6 +3,7 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+pub mod history;
 mod shape;
 
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};

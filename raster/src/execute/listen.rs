@@ -5,19 +5,36 @@ use core::ops::Range;
 use rayon::prelude::*;
 
 use crate::geometry::Chunk;
-use crate::observer::{AccessBatch, AccessObserver, BlockAccess, Wants};
+use crate::observer::{
+    AccessBatch, AccessObserver, BlockAccess, FragmentRecord, ShadedBlock, TexelAccess, Wants,
+};
+use crate::tile::Gathered;
 
 /// Primitives of a chunk while somebody listens: no fewer can be held back.
-pub(super) const CHUNK: u32 = 32;
+const CHUNK: u32 = 32;
 /// Accesses that chunks may make together before they are handed over.
 const ACCESSES: u64 = 1 << 18;
+
+/// How many times the memory of an access goes with each, of what is wanted.
+fn weight(wants: Wants<'_>) -> u32 {
+    match (wants.outputs, wants.texels) {
+        (true, _) => 8,
+        (false, true) => 2,
+        (false, false) => 1,
+    }
+}
+
+/// Primitives of a chunk for an observer who wants this.
+pub(super) fn chunk(wants: Wants<'_>) -> u32 {
+    CHUNK / weight(wants)
+}
 
 /// An observer of one pass, and the accesses that it has not seen yet.
 pub(super) struct Listener<'a> {
     pub(super) wants: Wants<'a>,
     observer: &'a mut dyn AccessObserver,
     pass: usize,
-    blocks: Vec<BlockAccess>,
+    batch: Batch,
 }
 
 impl<'a> Listener<'a> {
@@ -26,47 +43,140 @@ impl<'a> Listener<'a> {
             wants,
             observer,
             pass,
-            blocks: Vec::new(),
+            batch: Batch::default(),
         }
     }
 
     /// Hands over what the workers gathered since the last time.
     pub(super) fn hear<'d>(
         &mut self,
-        gathered: impl Iterator<Item = &'d mut Vec<BlockAccess>>,
+        gathered: impl Iterator<Item = &'d mut Gathered>,
         parallel: bool,
     ) {
+        let batch = &mut self.batch;
+        batch.clear();
+        gathered.for_each(|g| batch.take(g, parallel));
+        if batch.blocks.is_empty() {
+            return;
+        }
+        batch.sort(parallel);
+        let whole = AccessBatch {
+            blocks: &batch.blocks,
+            texels: &batch.texels,
+            fragments: &batch.fragments,
+            outputs: &batch.outputs,
+            values: &batch.values,
+        };
+        self.observer.batch(self.pass, &whole);
+    }
+}
+
+/// What all workers gathered.
+#[derive(Default)]
+struct Batch {
+    blocks: Vec<BlockAccess>,
+    texels: Vec<TexelAccess>,
+    fragments: Vec<FragmentRecord>,
+    outputs: Vec<ShadedBlock>,
+    values: Vec<u32>,
+}
+
+impl Batch {
+    fn clear(&mut self) {
         self.blocks.clear();
-        for list in gathered {
-            if self.blocks.is_empty() && !parallel {
-                core::mem::swap(&mut self.blocks, list);
-            } else {
-                // Other workers may gather as much the next time: keep no memory for each.
-                self.blocks.extend(core::mem::take(list));
-            }
+        self.texels.clear();
+        self.fragments.clear();
+        self.outputs.clear();
+        self.values.clear();
+    }
+
+    /// Takes over what one worker gathered, of several if `parallel`.
+    fn take(&mut self, from: &mut Gathered, parallel: bool) {
+        let (event, value) = (self.blocks.len() as u32, self.values.len() as u32);
+        append(&mut self.blocks, &mut from.blocks, parallel, |_| {});
+        append(&mut self.texels, from.texels.folded(), parallel, |t| {
+            t.event += event
+        });
+        append(&mut self.fragments, &mut from.fragments, parallel, |f| {
+            f.event += event;
+        });
+        append(&mut self.outputs, &mut from.outputs, parallel, |o| {
+            (o.event, o.first) = (o.event + event, o.first + value);
+        });
+        append(&mut self.values, &mut from.values, parallel, |_| {});
+    }
+
+    /// Orders events, and with them what belongs to them, so that nothing tells who has
+    /// gathered it.
+    fn sort(&mut self, parallel: bool) {
+        let key = |a: &BlockAccess| (a.draw, a.primitive, a.piece, a.block[1], a.block[0]);
+        if self.texels.is_empty() && self.fragments.is_empty() && self.outputs.is_empty() {
+            return sort_by_key(&mut self.blocks, parallel, key);
         }
-        let order = |a: &BlockAccess| (a.draw, a.primitive, a.piece, a.block[1], a.block[0]);
-        if parallel {
-            self.blocks.par_sort_unstable_by_key(order);
-        } else {
-            self.blocks.sort_unstable_by_key(order);
+        let mut order: Vec<u32> = (0..self.blocks.len() as u32).collect();
+        sort_by_key(&mut order, parallel, |&i| key(&self.blocks[i as usize]));
+        self.blocks = order.iter().map(|&i| self.blocks[i as usize]).collect();
+        let mut rank = vec![0; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            rank[old as usize] = new as u32;
         }
-        if !self.blocks.is_empty() {
-            let batch = AccessBatch::new(&self.blocks);
-            self.observer.batch(self.pass, &batch);
+        self.sort_outputs(&rank);
+        let new = |event: &mut u32| *event = rank[*event as usize];
+        self.texels.iter_mut().for_each(|t| new(&mut t.event));
+        self.fragments.iter_mut().for_each(|f| new(&mut f.event));
+        let texel = |t: &TexelAccess| (t.event, t.slot, t.mip, t.layer, t.block[1], t.block[0]);
+        sort_by_key(&mut self.texels, parallel, texel);
+        self.fragments.sort_unstable_by_key(|f| f.event);
+    }
+
+    /// Orders outputs by their events' new numbers, and moves their values after them.
+    fn sort_outputs(&mut self, rank: &[u32]) {
+        let ends = self.outputs.iter().skip(1).map(|o| o.first);
+        let ends: Vec<u32> = ends.chain([self.values.len() as u32]).collect();
+        let mut parts: Vec<_> = self.outputs.drain(..).zip(ends).collect();
+        parts
+            .iter_mut()
+            .for_each(|(o, _)| o.event = rank[o.event as usize]);
+        parts.sort_unstable_by_key(|(o, _)| o.event);
+        let mut values = Vec::with_capacity(self.values.len());
+        for (output, end) in parts {
+            let first = values.len() as u32;
+            values.extend_from_slice(&self.values[output.first as usize..end as usize]);
+            self.outputs.push(ShadedBlock { first, ..output });
         }
+        self.values = values;
+    }
+}
+
+/// Moves what a worker gathered to the end of `to`, each entry changed.
+fn append<T>(to: &mut Vec<T>, from: &mut Vec<T>, parallel: bool, change: impl Fn(&mut T)) {
+    from.iter_mut().for_each(change);
+    if parallel {
+        // Other workers may gather as much the next time: keep no memory for each.
+        to.append(&mut core::mem::take(from));
+    } else {
+        core::mem::swap(to, from);
+    }
+}
+
+fn sort_by_key<T: Send, K: Ord>(list: &mut [T], parallel: bool, key: impl Fn(&T) -> K + Sync) {
+    if parallel {
+        list.par_sort_unstable_by_key(key);
+    } else {
+        list.sort_unstable_by_key(key);
     }
 }
 
 /// Cuts chunks into runs whose accesses wait in memory together: at least a chunk each.
-pub(super) fn runs(chunks: &[Chunk]) -> Vec<Range<usize>> {
+pub(super) fn runs(chunks: &[Chunk], wants: Wants<'_>) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
-    let (mut start, mut room) = (0, ACCESSES);
+    let whole = ACCESSES / u64::from(weight(wants));
+    let (mut start, mut room) = (0, whole);
     for (i, chunk) in chunks.iter().enumerate() {
         let most = chunk.triangles.iter().map(|t| t.most_blocks()).sum();
         if room < most && start < i {
             runs.push(start..i);
-            (start, room) = (i, ACCESSES);
+            (start, room) = (i, whole);
         }
         room = room.saturating_sub(most);
     }

@@ -109,7 +109,7 @@ impl<'a> Executor<'a> {
     ) -> Result<Vec<Counters>, Error> {
         let units = units(&self.prepared)?;
         let mut counters = self.vertex_counters(&units);
-        let batches = self.batches(&units, listener.is_some());
+        let batches = self.batches(&units, listener.as_ref().map(|l| l.wants));
         let mut vertices = Vertices::new(units.len());
         let mut stage = TileStage::new(self.gpu, self.grid, self.prepared.len(), lent);
         for (number, jobs) in batches.iter().enumerate() {
@@ -123,16 +123,16 @@ impl<'a> Executor<'a> {
                 });
             }
             let runs = match &listener {
-                Some(_) => listen::runs(&chunks),
+                Some(listener) => listen::runs(&chunks, listener.wants),
                 None => core::iter::once(0..chunks.len()).collect(),
             };
             for run in runs {
                 let ends = is_last && run.end == chunks.len();
                 let (jobs, chunks) = (&jobs[run.clone()], &chunks[run]);
                 let work = draw_work(&units, jobs, &vertices.shaded, chunks, &self.prepared);
-                stage.run(&work, ends, listener.is_some());
+                stage.run(&work, ends, listener.as_ref().map(|l| l.wants));
                 if let Some(listener) = &mut listener {
-                    listener.hear(stage.desks.accesses(), self.parallel);
+                    listener.hear(stage.desks.gathered(), self.parallel);
                 }
             }
             self.recycled.chunks.extend(chunks);
@@ -158,9 +158,9 @@ impl<'a> Executor<'a> {
             .collect()
     }
 
-    fn batches(&self, units: &[Unit<'_>], listening: bool) -> Vec<Vec<Job>> {
-        if listening {
-            return batches(units, listen::CHUNK, LISTENING_BATCH);
+    fn batches(&self, units: &[Unit<'_>], wants: Option<Wants<'_>>) -> Vec<Vec<Job>> {
+        if let Some(wants) = wants {
+            return batches(units, listen::chunk(wants), LISTENING_BATCH);
         }
         let threads = match self.parallel {
             true => rayon::current_num_threads() as u32,

@@ -9,14 +9,14 @@ use super::split::{Fill, Lent};
 use crate::counters::AccessSizes;
 use crate::geometry::TileGrid;
 use crate::gpu::Gpu;
-use crate::observer::BlockAccess;
+use crate::observer::Wants;
 use crate::simd::SimdLevel;
-use crate::tile::{DrawWork, Scratch, TileTarget, run_tile};
+use crate::tile::{DrawWork, Gathered, Scratch, TileTarget, run_tile};
 
 /// What a worker needs beside the tile itself; what it counts and finds.
 pub(super) struct Desk {
     pub(super) scratch: Scratch,
-    accesses: Vec<BlockAccess>,
+    gathered: Gathered,
 }
 
 /// Desks of a pass. A worker takes any free one for a tile: all that they gather
@@ -29,7 +29,7 @@ impl Desks {
         let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         free.unwrap_or_else(|| Desk {
             scratch: Scratch::new(draws),
-            accesses: Vec::new(),
+            gathered: Gathered::default(),
         })
     }
 
@@ -41,9 +41,9 @@ impl Desks {
     }
 
     /// What the workers have gathered.
-    pub(super) fn accesses(&mut self) -> impl Iterator<Item = &mut Vec<BlockAccess>> {
+    pub(super) fn gathered(&mut self) -> impl Iterator<Item = &mut Gathered> {
         let all = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
-        all.iter_mut().map(|d| &mut d.accesses)
+        all.iter_mut().map(|d| &mut d.gathered)
     }
 
     pub(super) fn into_all(self) -> Vec<Desk> {
@@ -82,8 +82,8 @@ impl<'a> TileStage<'a> {
     }
 
     /// Runs `work` on all tiles, after the load operations the first time, and before
-    /// the store operations where the pass `ends`.
-    pub(super) fn run(&mut self, work: &[DrawWork<'_>], ends: bool, listening: bool) {
+    /// the store operations where the pass `ends`; gathers what a listener wants.
+    pub(super) fn run(&mut self, work: &[DrawWork<'_>], ends: bool, wants: Option<Wants<'_>>) {
         let loads = self.loads.take();
         let visit = Visit {
             level: self.gpu.config.simd,
@@ -92,7 +92,7 @@ impl<'a> TileStage<'a> {
             sizes: &self.sizes,
             before: loads.as_ref(),
             after: ends.then_some(&self.stores),
-            listening,
+            wants,
         };
         let (desks, draws) = (&self.desks, self.draws);
         if self.parallel {
@@ -119,7 +119,7 @@ struct Visit<'a> {
     sizes: &'a AccessSizes,
     before: Option<&'a Fill>,
     after: Option<&'a Fill>,
-    listening: bool,
+    wants: Option<Wants<'a>>,
 }
 
 impl Visit<'_> {
@@ -134,7 +134,7 @@ impl Visit<'_> {
             number as usize,
             tile,
             &mut desk.scratch,
-            self.listening.then_some(&mut desk.accesses),
+            self.wants.map(|w| (w, &mut desk.gathered)),
         );
         if let Some(fill) = self.after {
             fill.apply(tile, self.sizes);

@@ -1,5 +1,6 @@
 //! Reading texels: gathers, one lane at a time, and decoding, over lanes.
 
+use super::SlotLog;
 use crate::format::lanes::Words;
 use crate::simd::{I32, LANES, Lanes};
 use crate::texture::{BLOCK, Block, Block4, ColorBlocks, Plane, Texture};
@@ -30,8 +31,18 @@ pub(crate) enum Aspect {
 pub(crate) const NO_WORDS: Words = [[0; LANES]; 4];
 
 /// Puts the stored bits of texels into `words`, which hold zeros; lanes that do not
-/// read are left alone. It does not depend on the instruction set.
-pub(super) fn gather(texture: &Texture, aspect: Aspect, t: &Texels<'_>, words: &mut Words) {
+/// read are left alone. It does not depend on the instruction set. Counted reads are
+/// logged, if somebody listens.
+pub(super) fn gather(
+    texture: &Texture,
+    aspect: Aspect,
+    t: &Texels<'_>,
+    log: Option<&mut SlotLog<'_>>,
+    words: &mut Words,
+) {
+    if let Some(log) = log {
+        log.add(t);
+    }
     let planes = &texture.planes[t.mip as usize];
     let mut rest = t.lanes;
     while rest != 0 {
@@ -197,7 +208,7 @@ mod tests {
                     lanes,
                 };
                 let mut words = NO_WORDS;
-                gather(&texture, Aspect::Main, &texels, &mut words);
+                gather(&texture, Aspect::Main, &texels, None, &mut words);
                 words
             };
             for (x0, y0) in [(0, 0), (8, 2), (32, 22), (3, 2), (8, 5), (24, 16)] {

@@ -5,10 +5,12 @@ mod address;
 mod cube;
 mod fetch;
 mod lod;
+mod log;
 mod sample;
 
 pub(crate) use fetch::{Aspect, NO_WORDS};
 pub(crate) use lod::Detail;
+pub(crate) use log::{SlotLog, TexelLog};
 pub(crate) use sample::{decode_fetched, fetch_words, look_up};
 
 use crate::state::Sampler;

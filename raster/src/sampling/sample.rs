@@ -6,11 +6,11 @@
 //! are computed, helpers too, for derivatives of what a look-up gives; only
 //! fragments are counted.
 
-use super::BoundTexture;
 use super::address::Axis;
 use super::cube::{self, Face};
 use super::fetch::{self, Aspect, NO_WORDS, Texels, gather};
 use super::lod::{self, Detail, Levels};
+use super::{BoundTexture, SlotLog};
 use crate::counters::COUNT;
 use crate::format::lanes::{Words, decode};
 
@@ -36,6 +36,7 @@ struct LookUp<'a, L: Lanes> {
     /// Lanes whose reads are counted.
     counted: u16,
     texels: u64,
+    log: Option<SlotLog<'a>>,
 }
 
 /// Number of axes that are filtered.
@@ -219,7 +220,8 @@ impl<L: Lanes> LookUp<'_, L> {
                 .to_array(),
             lanes: read,
         };
-        self.bordered(read_texels(self.l, self.texture, &t), inside)
+        let texels = read_texels(self.l, self.texture, &t, self.log.as_mut());
+        self.bordered(texels, inside)
     }
 
     /// The border colour where a texel is not inside; channels that the format
@@ -251,6 +253,7 @@ pub(crate) fn look_up<L: Lanes>(
     counted: u16,
     coord: &[F32<L>; 3],
     detail: &Detail<L>,
+    log: Option<SlotLog<'_>>,
 ) -> ([F32<L>; 4], u64) {
     outlined(
         l,
@@ -262,6 +265,7 @@ pub(crate) fn look_up<L: Lanes>(
                 sampler: &bound.sampler,
                 counted,
                 texels: 0,
+                log,
             };
             (look_up.sample(*coord, detail), look_up.texels)
         },
@@ -309,9 +313,14 @@ fn axis_of<L: Lanes>(
 
 /// Decoded texels.
 #[inline(never)]
-fn read_texels<L: Lanes>(l: L, texture: &Texture, t: &Texels<'_>) -> [F32<L>; 4] {
+fn read_texels<L: Lanes>(
+    l: L,
+    texture: &Texture,
+    t: &Texels<'_>,
+    log: Option<&mut SlotLog<'_>>,
+) -> [F32<L>; 4] {
     let mut words = NO_WORDS;
-    gather(texture, Aspect::Main, t, &mut words);
+    gather(texture, Aspect::Main, t, log, &mut words);
     outlined(
         l,
         #[inline(always)]
@@ -338,6 +347,7 @@ pub(crate) fn fetch_words<L: Lanes>(
     aspect: Aspect,
     at: [I32<L>; 3],
     mip: u32,
+    mut log: Option<SlotLog<'_>>,
     words: &mut Words,
 ) -> u16 {
     let has_aspect = aspect == Aspect::Main || texture.desc.format.is_depth_stencil();
@@ -364,7 +374,7 @@ pub(crate) fn fetch_words<L: Lanes>(
         at: &texture.layouts[mip as usize].locate_lanes(x, y).to_array(),
         lanes: inside,
     };
-    gather(texture, aspect, &t, words);
+    gather(texture, aspect, &t, log.as_mut(), words);
     inside
 }
 

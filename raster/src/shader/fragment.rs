@@ -2,7 +2,7 @@
 
 use crate::counters::COUNT;
 use crate::depth_plane::ShaderDepth;
-use crate::sampling::BoundTexture;
+use crate::sampling::{BoundTexture, TexelLog};
 use crate::simd::{F32, I32, LANES, Lanes, Mask, U32};
 use crate::texture::PACKETS;
 use crate::{MAX_COLOR_ATTACHMENTS, MAX_SHADER_COUNTS, MAX_TEXTURES, MAX_VARYINGS};
@@ -49,6 +49,19 @@ pub(crate) struct VaryingPlanes {
     pub(crate) gy: [f32; MAX_VARYINGS + 1],
     /// Bit i: varying i is divided by w.
     pub(crate) perspective: u32,
+}
+
+impl VaryingPlanes {
+    /// Varying `i` at one pixel of the block, as [`Fragment::varying`] gives it.
+    pub(crate) fn at(&self, i: usize, column: u32, row: u32) -> f32 {
+        let plane =
+            |i: usize| (self.base[i] + column as f32 * self.gx[i]) + row as f32 * self.gy[i];
+        if self.perspective >> i & 1 != 0 {
+            plane(i) * (1.0 / plane(MAX_VARYINGS))
+        } else {
+            plane(i)
+        }
+    }
 }
 
 /// What the fragments of a packet computed.
@@ -106,6 +119,8 @@ pub(crate) struct ShadeBlock<'a> {
     pub(crate) attachments: usize,
     pub(crate) writes_depth: bool,
     pub(crate) events: &'a mut ShaderEvents,
+    /// Where counted reads of texels are taken down, if somebody asks for them.
+    pub(crate) log: Option<&'a mut TexelLog>,
 }
 
 /// Inputs and outputs of 16 fragments.
@@ -125,6 +140,7 @@ pub struct Fragment<'a, L: Lanes> {
     /// Bit i: colour attachment i is set; bit 31: depth is.
     pub(super) set: u32,
     pub(crate) events: &'a mut ShaderEvents,
+    pub(super) log: Option<&'a mut TexelLog>,
 }
 
 /// Columns and rows of the lanes of a packet.
@@ -156,6 +172,7 @@ impl<'a, L: Lanes> Fragment<'a, L> {
             out,
             set: 0,
             events: b.events,
+            log: b.log.as_deref_mut(),
         };
         if b.planes.perspective != 0 {
             f.w = f.plane(MAX_VARYINGS).recip();

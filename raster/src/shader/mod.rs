@@ -32,6 +32,10 @@ pub(crate) use vertex::{VertexBatch, VertexOutput};
 
 use std::sync::Arc;
 
+use crate::command::VertexBuffer;
+use crate::error::Error;
+use crate::simd::{LANES, SimdLevel};
+
 /// How a varying is interpolated over a primitive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
@@ -65,6 +69,12 @@ impl FragmentStage {
         self.0.outputs()
     }
 
+    /// The Rust type of its shader, for debuggers.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        self.0.type_name()
+    }
+
     /// The colour of attachment 0, where every fragment has the same
     /// ([`FragmentShader::constant`]).
     #[must_use]
@@ -74,10 +84,56 @@ impl FragmentStage {
 }
 
 impl VertexStage {
+    /// The Rust type of its shader, for debuggers.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        self.0.type_name()
+    }
+
     /// How each varying is interpolated.
     #[must_use]
     pub fn varyings(&self) -> &[Interpolation] {
         self.0.varyings()
+    }
+
+    /// Clip-space positions of `vertices` of `buffer` in an instance, as a draw would
+    /// shade them.
+    ///
+    /// # Errors
+    /// Where a vertex is beyond the end of the buffer.
+    pub fn positions(
+        &self,
+        buffer: Option<&VertexBuffer>,
+        vertices: &[u32],
+        instance: u32,
+    ) -> Result<Vec<[f32; 4]>, Error> {
+        let (data, stride) = buffer.map_or((&[][..], 0), |b| (&b.data[..], b.stride));
+        let count = data.len().checked_div(stride).unwrap_or(usize::MAX);
+        if let Some(&vertex) = vertices.iter().find(|v| **v as usize >= count) {
+            let vertices = count;
+            return Err(Error::VertexOutOfRange { vertex, vertices });
+        }
+        let padded = vertices.len().next_multiple_of(LANES);
+        let mut columns = vec![vec![0.0; padded]; 4 + self.varyings().len()];
+        let (position, varyings) = columns.split_at_mut(4);
+        let [x, y, z, w] = position else {
+            unreachable!("split after four")
+        };
+        let mut varyings: Vec<&mut [f32]> = varyings.iter_mut().map(Vec::as_mut_slice).collect();
+        let batch = VertexBatch {
+            data,
+            stride,
+            vertices,
+            instance,
+        };
+        let mut out = VertexOutput {
+            position: [x, y, z, w].map(|c| &mut c[..]),
+            varyings: &mut varyings,
+        };
+        self.0.shade_batch(SimdLevel::detect(), &batch, &mut out);
+        Ok((0..vertices.len())
+            .map(|i| core::array::from_fn(|c| columns[c][i]))
+            .collect())
     }
 }
 

@@ -88,7 +88,11 @@ impl<L: Lanes> Fragment<'_, L> {
             return [F32::splat(l, 0.0); 4];
         };
         let counted = self.counted_lanes();
-        let (value, texels) = look_up(l, bound, counted, &coord, detail);
+        let log = self.log.as_mut().map(
+            #[inline(always)]
+            |log| log.of_slot(slot, counted),
+        );
+        let (value, texels) = look_up(l, bound, counted, &coord, detail, log);
         self.count_fetches(slot, texels);
         value
     }
@@ -103,8 +107,13 @@ impl<L: Lanes> Fragment<'_, L> {
         words: &mut Words,
     ) -> Option<(&Texture, u16)> {
         let texture = self.textures.get(slot)?.texture;
-        let inside = fetch_words(texture, aspect, at, mip, words);
-        let texels = u64::from((inside & self.counted_lanes()).count_ones());
+        let counted = self.counted_lanes();
+        let log = self.log.as_mut().map(
+            #[inline(always)]
+            |log| log.of_slot(slot, counted),
+        );
+        let inside = fetch_words(texture, aspect, at, mip, log, words);
+        let texels = u64::from((inside & counted).count_ones());
         self.count_fetches(slot, texels);
         Some((texture, inside))
     }

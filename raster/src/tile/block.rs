@@ -3,6 +3,7 @@
 
 use super::config::{DrawConfig, StencilFace};
 use super::depth::{self, Decision, Decisions, DepthBlock, GroupDepth};
+use super::listen::{self, Listening, Probed};
 use super::shade::VaryingCache;
 use super::target::TileTarget;
 use super::{COUNT, ChunkRef, TileStageCounters, depth_test, output, shade, stencil};
@@ -24,8 +25,8 @@ pub(super) struct Env<'a, 't> {
     pub(super) counters: &'a mut TileStageCounters,
     pub(super) outputs: &'a mut [PacketOutput; PACKETS],
     pub(super) varyings: &'a mut VaryingCache,
-    /// Where block accesses go, if somebody listens.
-    pub(super) accesses: Option<&'a mut Vec<BlockAccess>>,
+    /// Somebody may listen.
+    pub(super) listening: Option<Listening<'a>>,
 }
 
 /// One block of a tile.
@@ -358,9 +359,35 @@ fn run_covered<L: Lanes, const D24: bool>(
         );
     }
     if mask != 0 {
-        let access = fragments(l, env, t, config.face(t), place, plane, decision, mask);
-        record(env, t, place, access);
+        if env.listening.is_some() {
+            return listened::<L, D24>(l, env, t, place, plane, decision, mask);
+        }
+        fragments(l, env, t, config.face(t), place, plane, decision, mask);
     }
+}
+
+/// As [`fragments`], and takes down what they did.
+#[cfg_attr(not(gnomon_unoptimised), inline(always))]
+fn listened<L: Lanes, const D24: bool>(
+    l: L,
+    env: &mut Env<'_, '_>,
+    t: &Triangle,
+    place: Place,
+    plane: &DepthBlock<D24>,
+    decision: Option<Decision>,
+    mask: u64,
+) {
+    let probed = listen::probed_pixel(env, place, mask).map(
+        #[inline(always)]
+        |pixel| {
+            listen::reach_probed_fragment(pixel);
+            let packet = plane.packet(l, pixel / LANES).to_array();
+            Probed::new(env, place, pixel, packet[pixel % LANES] as u32)
+        },
+    );
+    let face = env.config.face(t);
+    let access = fragments(l, env, t, face, place, plane, decision, mask);
+    listen::take_down::<D24>(env, t, place, probed, access);
 }
 
 /// Pixels on the right side of clip planes and of the far end.
@@ -689,18 +716,4 @@ fn update_stencil<L: Lanes>(
     }
     count(&mut c.accesses.stencil_read, read);
     access.stencil_read = read;
-}
-
-fn record(env: &mut Env<'_, '_>, t: &Triangle, place: Place, access: BlockAccess) {
-    let draw = env.draw;
-    if let Some(all) = &mut env.accesses {
-        all.push(BlockAccess {
-            draw,
-            primitive: t.primitive,
-            piece: u32::from(t.piece),
-            block: [(place.x / 8) as u16, (place.y / 8) as u16],
-            front: t.is_front(),
-            ..access
-        });
-    }
 }

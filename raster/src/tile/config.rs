@@ -183,7 +183,7 @@ impl DrawConfig<'_> {
     /// Prepares for what an observer wants.
     pub(crate) fn listen(&mut self, wants: Wants) {
         self.depth_ranges = wants.depth_ranges && self.attached;
-        self.needs_depth |= self.depth_ranges;
+        self.needs_depth |= self.depth_ranges || (wants.probe.is_some() && self.attached);
     }
 
     /// Whether [`Self::lean`] should be set.

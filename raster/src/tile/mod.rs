@@ -13,6 +13,7 @@ mod coverage;
 mod depth;
 mod depth_test;
 mod lean;
+mod listen;
 mod output;
 mod shade;
 mod stencil;
@@ -22,12 +23,13 @@ use block::{BlockStage, General};
 use lean::Lean;
 
 pub(crate) use config::{DrawConfig, StencilFace, TargetConfig};
+pub(crate) use listen::{Gathered, Listening};
 pub(crate) use target::{ColorTile, DepthTile, TileTarget};
 
 pub(crate) use crate::counters::COUNT;
 use crate::counters::{Accesses, Counters, EventCounters, FragmentCounters, TileCounters};
 use crate::geometry::{Chunk, DepthEncoding, ShadedVertices};
-use crate::observer::BlockAccess;
+use crate::observer::Wants;
 use crate::shader::{PacketOutput, ShaderEvents};
 use crate::simd::{F32, Lanes, SimdLevel, outlined, with_lanes};
 use crate::texture::PACKETS;
@@ -125,14 +127,14 @@ impl Scratch {
     }
 }
 
-/// Runs all of `work` on one tile. Accesses go to `accesses` where it is given.
+/// Runs all of `work` on one tile. What a listener wants is gathered.
 pub(crate) fn run_tile(
     level: SimdLevel,
     work: &[DrawWork<'_>],
     tile_number: usize,
     target: &mut TileTarget<'_>,
     scratch: &mut Scratch,
-    mut accesses: Option<&mut Vec<BlockAccess>>,
+    mut listening: Option<(Wants<'_>, &mut Gathered)>,
 ) {
     for w in work {
         for chunk in &w.chunks {
@@ -149,7 +151,10 @@ pub(crate) fn run_tile(
                 counters: &mut scratch.counters[w.draw],
                 outputs: &mut scratch.outputs,
                 varyings: &mut scratch.varyings,
-                accesses: accesses.as_deref_mut(),
+                listening: listening.as_mut().map(|(wants, gathered)| Listening {
+                    wants: *wants,
+                    gathered,
+                }),
             };
             with_lanes!(level, l => run_bin(l, &mut env, bin));
         }
@@ -163,7 +168,7 @@ fn run_bin<L: Lanes>(l: L, env: &mut block::Env<'_, '_>, bin: &[u32]) {
     if let Some(color) = config.constant {
         fill_outputs(l, env.outputs, color);
     }
-    let lean = config.lean && env.accesses.is_none();
+    let lean = config.lean && env.listening.is_none();
     match (lean, config.encoding, config.shader.is_some()) {
         (true, DepthEncoding::D24, false) => kernel::<L, Lean<false>, true>(l, env, bin),
         (true, DepthEncoding::D24, true) => kernel::<L, Lean<true>, true>(l, env, bin),

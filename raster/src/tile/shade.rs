@@ -1,6 +1,7 @@
 //! Calling the fragment shader: varying planes of a block, and its results.
 
 use super::block::{Env, Place};
+use super::config::DrawConfig;
 use super::depth::DepthBlock;
 use crate::MAX_VARYINGS;
 use crate::format;
@@ -87,6 +88,11 @@ impl VaryingCache {
     #[inline(always)]
     pub(super) fn forget(&mut self) {
         self.ready = false;
+    }
+
+    /// The planes over the block that was shaded last.
+    pub(super) fn planes(&self) -> &VaryingPlanes {
+        &self.planes
     }
 }
 
@@ -213,6 +219,10 @@ pub(super) fn run<L: Lanes, const D24: bool>(
         attachments: env.config.targets.len(),
         writes_depth: env.config.writes_shader_depth,
         events: &mut env.counters.shader,
+        log: match &mut env.listening {
+            Some(l) if l.wants.texels => Some(&mut l.gathered.texels),
+            _ => None,
+        },
     };
     shader.shade_block(env.level, &mut block);
     if !env.config.discards {
@@ -231,21 +241,27 @@ pub(super) fn run<L: Lanes, const D24: bool>(
 #[inline(always)]
 pub(super) fn shader_depths<const D24: bool>(env: &mut Env<'_, '_>, live: u64) -> Box<Block<u32>> {
     let mut block = Box::new(Block([0u32; 64]));
-    let [lo, hi] = env.config.depth_range;
     for i in (0..64).filter(|i| live >> i & 1 != 0) {
         let v = env.outputs[i / LANES].depth[i % LANES];
         let events = &mut env.counters.events;
         events.nan_canonicalised += u64::from(v.is_nan());
         events.depth_clamped += u64::from(!v.is_nan() && !(0.0..=1.0).contains(&v));
-        let encoded = if D24 {
-            format::d24_from_f32(v) as i32
-        } else {
-            let z = if v > 0.0 { v } else { 0.0 };
-            (if z < 1.0 { z } else { 1.0 }).to_bits() as i32
-        };
-        block.0[i] = encoded.max(lo).min(hi) as u32;
+        block.0[i] = encode_depth::<D24>(env.config, v);
     }
     block
+}
+
+/// A depth that a shader wrote as it is stored.
+#[inline(always)]
+pub(super) fn encode_depth<const D24: bool>(config: &DrawConfig<'_>, v: f32) -> u32 {
+    let [lo, hi] = config.depth_range;
+    let encoded = if D24 {
+        format::d24_from_f32(v) as i32
+    } else {
+        let z = if v > 0.0 { v } else { 0.0 };
+        (if z < 1.0 { z } else { 1.0 }).to_bits() as i32
+    };
+    encoded.max(lo).min(hi) as u32
 }
 
 /// Pixels of the block on the right side of every user clip plane (rules §4).

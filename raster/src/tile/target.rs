@@ -1,6 +1,8 @@
 //! A tile's share of the attachments: disjoint slices, handed out before the
 //! workers start.
 
+use crate::format::{Format, from_stored};
+use crate::observer::ColorBlock;
 use crate::texture::{Block, Block4};
 
 /// Colour blocks of a tile.
@@ -10,6 +12,36 @@ pub(crate) enum ColorTile<'a> {
     B32(&'a mut [Block<u32>]),
     B16x4(&'a mut [Block4<u16>]),
     B32x4(&'a mut [Block4<u32>]),
+}
+
+impl ColorTile<'_> {
+    /// Block `b` as it is stored.
+    pub(crate) fn block(&self, b: usize) -> ColorBlock<'_> {
+        match self {
+            Self::B8(v) => ColorBlock::B8(&v[b].0),
+            Self::B16(v) => ColorBlock::B16(&v[b].0),
+            Self::B32(v) => ColorBlock::B32(&v[b].0),
+            Self::B16x4(v) => ColorBlock::B16x4(&v[b].0),
+            Self::B32x4(v) => ColorBlock::B32x4(&v[b].0),
+        }
+    }
+
+    /// Raw channels of pixel `i` of block `b`; unused ones are 0.
+    pub(crate) fn get(&self, format: Format, b: usize, i: usize) -> [u32; 4] {
+        from_stored(format, self.block(b).stored(i))
+    }
+}
+
+impl ColorBlock<'_> {
+    fn stored(&self, i: usize) -> [u32; 4] {
+        match self {
+            Self::B8(v) => [u32::from(v[i]), 0, 0, 0],
+            Self::B16(v) => [u32::from(v[i]), 0, 0, 0],
+            Self::B32(v) => [v[i], 0, 0, 0],
+            Self::B16x4(v) => v.map(|channel| u32::from(channel[i])),
+            Self::B32x4(v) => v.map(|channel| channel[i]),
+        }
+    }
 }
 
 /// Depth, stencil and zmin/zmax blocks of a tile.

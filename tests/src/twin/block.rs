@@ -2,13 +2,14 @@
 
 use gnomon_raster::shader::{ScalarFragment, ScalarFragmentOutput};
 use gnomon_raster::state::{CompareFunction, StencilFaceState, StencilOperation};
-use gnomon_raster::{BlockAccess, Counters};
+use gnomon_raster::{BlockAccess, Counters, FragmentEnd};
 
-use super::case::{TwinDraw, TwinPass};
+use super::case::{Log, TwinDraw, TwinPass};
 use super::color::Target;
 use super::coverage::{ClipPlanes, DrawRect, covers};
 use super::depth::{DepthPlane, Encoding, limit};
 use super::image::Images;
+use super::log::BlockLog;
 use super::look_up::{Reads, Values, look_up_all};
 use super::program::Program;
 use super::setup::Triangle;
@@ -25,6 +26,7 @@ pub(super) struct DrawContext<'a> {
     pub(super) encoding: Encoding,
     pub(super) depth_range: [f32; 2],
     pub(super) skip: bool,
+    pub(super) log: Log,
     pub(super) textures: Vec<Bound>,
 }
 
@@ -37,15 +39,15 @@ pub(super) struct TriangleContext<'a> {
 }
 
 /// A fragment on its way.
-struct Fragment {
-    x: u32,
-    y: u32,
+pub(super) struct Fragment {
+    pub(super) x: u32,
+    pub(super) y: u32,
     /// Where its pixel is in an image.
-    at: usize,
+    pub(super) at: usize,
     /// Its bit in a block's masks.
-    bit: u64,
+    pub(super) bit: u64,
     /// Depth in stored form.
-    depth: u32,
+    pub(super) depth: u32,
     /// What the shader computed.
     output: Option<ScalarFragmentOutput>,
 }
@@ -68,15 +70,25 @@ pub(super) struct Block<'a> {
     /// Top-left pixel.
     pub(super) x: u32,
     pub(super) y: u32,
+    pub(super) log: BlockLog<'a>,
 }
 
 impl Block<'_> {
     /// Runs all steps; the accesses, unless the triangle has no fragment here.
     pub(super) fn run(mut self) -> Option<BlockAccess> {
-        let mut fragments = self.generated();
+        let fragments = self.generated();
         if fragments.is_empty() {
             return None;
         }
+        self.begin_record(&fragments);
+        self.process(fragments);
+        self.end_record();
+        self.see_block();
+        self.log.end();
+        Some(self.access)
+    }
+
+    fn process(&mut self, mut fragments: Vec<Fragment>) {
         self.counters.fragments.generated += fragments.len() as u64;
         if let Some([span, stored]) = self.depth_ranges() {
             (self.access.span, self.access.stored) = (span, stored);
@@ -86,7 +98,10 @@ impl Block<'_> {
             self.counters.tiles.culled += 1;
             self.counters.fragments.hiz_killed += fragments.len() as u64;
             self.access.ended.hiz = true;
-            return Some(self.access);
+            fragments
+                .iter()
+                .for_each(|f| self.log.ended(f, FragmentEnd::Hiz));
+            return;
         }
         self.counters.tiles.accepted += u64::from(verdict != Verdict::Unknown);
         let late = self.is_late();
@@ -103,14 +118,13 @@ impl Block<'_> {
         }
         self.counters.fragments.written += fragments.len() as u64;
         self.write_colors(&fragments);
-        Some(self.access)
     }
 
-    fn pixels(&self) -> Vec<(u32, u32)> {
+    pub(super) fn pixels(&self) -> Vec<(u32, u32)> {
         (0..64).map(|k| (self.x + k % 8, self.y + k / 8)).collect()
     }
 
-    fn in_image(&self, (x, y): (u32, u32)) -> bool {
+    pub(super) fn in_image(&self, (x, y): (u32, u32)) -> bool {
         x < self.ctx.size[0] && y < self.ctx.size[1]
     }
 
@@ -145,7 +159,7 @@ impl Block<'_> {
         list
     }
 
-    fn place(&self, x: u32, y: u32) -> usize {
+    pub(super) fn place(&self, x: u32, y: u32) -> usize {
         y as usize * self.ctx.size[0] as usize + x as usize
     }
 
@@ -227,8 +241,11 @@ impl Block<'_> {
             let out = program.shade(&self.shaded(f.x, f.y), &looked_up);
             if !(out.discard && program.discards_first) {
                 reads.count(&self.ctx.textures, self.counters);
+                self.log.texels(&reads);
             }
+            self.shaded_record(&f, &out);
             if out.discard {
+                self.log.ended(&f, FragmentEnd::Discarded);
                 self.counters.fragments.discarded += 1;
                 self.access.ended.discarded |= f.bit;
                 self.counters.shader_counts[1] += 1;
@@ -236,6 +253,7 @@ impl Block<'_> {
             }
             if program.depth.is_some() {
                 f.depth = self.shader_depth(out.depth);
+                self.depth_record(&f);
             }
             f.output = Some(out);
             left.push(f);
@@ -289,6 +307,7 @@ impl Block<'_> {
         for f in &fragments {
             if !(lo..=hi).contains(&stored[f.at]) {
                 self.access.ended.bounds |= f.bit;
+                self.log.ended(f, FragmentEnd::Bounds);
             }
         }
         fragments.retain(|f| (lo..=hi).contains(&stored[f.at]));
@@ -311,6 +330,7 @@ impl Block<'_> {
             } else {
                 self.counters.fragments.stencil_failed += 1;
                 self.access.ended.stencil |= f.bit;
+                self.log.ended(&f, FragmentEnd::Stencil);
                 self.stencil_operation(face.fail_op, &f);
             }
         }
@@ -319,6 +339,7 @@ impl Block<'_> {
 
     fn stencil_operation(&mut self, op: StencilOperation, f: &Fragment) {
         let (face, reference) = (*self.face(), self.reference());
+        self.log.operated(f, op);
         if modifies(op, &face) {
             self.access.stencil_read |= f.bit;
         }
@@ -358,6 +379,7 @@ impl Block<'_> {
             } else {
                 self.counters.fragments.depth_failed += 1;
                 self.access.ended.depth |= f.bit;
+                self.log.ended(&f, FragmentEnd::Depth);
                 self.stencil_operation(face.depth_fail_op, &f);
             }
         }

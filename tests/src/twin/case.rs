@@ -1,9 +1,12 @@
 //! What the twin draws: a closed description from which a command list is built too.
 
 use gnomon_raster::state::{
-    ColorTargetState, DepthStencilState, PrimitiveState, ScissorRect, Viewport,
+    ColorTargetState, DepthStencilState, PrimitiveState, ScissorRect, StencilOperation, Viewport,
 };
-use gnomon_raster::{BlockAccess, ClientTraffic, Counters, Format, LoadOp, StoreOp};
+use gnomon_raster::{
+    BlockAccess, ClientTraffic, Counters, Format, FragmentRecord, LoadOp, ShadedBlock, StoreOp,
+    TexelAccess,
+};
 
 use super::program::Program;
 use super::texture::{TextureUse, TwinTexture};
@@ -188,6 +191,44 @@ pub struct PassOutcome {
     pub clear: ClientTraffic,
     /// Block accesses in order, as an observer sees them.
     pub events: Vec<BlockAccess>,
+    /// What more there is to say of them.
+    pub details: EventDetails,
+}
+
+/// What an observer may be told of the events of a pass.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EventDetails {
+    /// Texels that were read.
+    pub texels: Vec<TexelAccess>,
+    /// Fragments of the probed pixel.
+    pub fragments: Vec<FragmentRecord>,
+    /// What shaders gave.
+    pub outputs: Vec<ShadedBlock>,
+    /// Where `outputs` point.
+    pub values: Vec<u32>,
+    /// The stencil operation of each of `fragments`; only the twin tells.
+    pub operations: Vec<Option<StencilOperation>>,
+    /// The probed pixel before and after load operations, before and after store
+    /// operations; only the twin tells.
+    pub looks: Vec<Look>,
+}
+
+/// What a pixel holds in all images of a case.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Look {
+    /// Raw channels by image.
+    pub color: Vec<[u32; 4]>,
+    /// Depth and stencil as stored, if there is such an image.
+    pub depth: Option<(u32, u8)>,
+}
+
+/// What the twin writes down beside events and outcome.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Log {
+    /// [`EventDetails::fragments`] of this pixel.
+    pub probe: Option<[u32; 2]>,
+    /// What [`super::BlockHash`] makes of each block that was written.
+    pub witness: bool,
 }
 
 /// Everything that a run leaves behind.

@@ -3,7 +3,7 @@
 use gnomon_raster::shader::ScalarFragment;
 use gnomon_raster::{Counters, MAX_TEXTURES};
 
-use super::texture::{Bound, Detail, Looked};
+use super::texture::{Bound, Detail, Looked, TexelRead};
 
 /// Most look-ups of a program.
 pub const MAX_LOOK_UPS: usize = 3;
@@ -71,18 +71,20 @@ pub struct LookUp {
 }
 
 /// Texture traffic of one fragment, by slot.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Reads {
     fetches: [u64; MAX_TEXTURES],
-    texels: [u64; MAX_TEXTURES],
+    /// With their slots.
+    pub(super) texels: Vec<(usize, TexelRead)>,
 }
 
 impl Reads {
     pub(super) fn count(&self, textures: &[Bound], c: &mut Counters) {
         for (slot, texture) in textures.iter().enumerate() {
             let t = &mut c.traffic.tex[slot];
-            t.read_accesses += self.texels[slot];
-            t.read_bytes += self.texels[slot] * texture.bytes();
+            let texels = self.texels.iter().filter(|(s, _)| *s == slot).count() as u64;
+            t.read_accesses += texels;
+            t.read_bytes += texels * texture.bytes();
             c.traffic.tex_fetches[slot] += self.fetches[slot];
         }
     }
@@ -102,18 +104,19 @@ pub(super) fn look_up_all(
             continue;
         };
         let looked = look(texture, look_up, quad, &values);
-        for (v, l) in values.iter_mut().zip(looked) {
+        for (v, l) in values.iter_mut().zip(&looked) {
             v[k] = l.0;
         }
         reads.fetches[look_up.slot] += 1;
-        reads.texels[look_up.slot] += looked[own].1;
+        let read = looked[own].1.iter().map(|read| (look_up.slot, *read));
+        reads.texels.extend(read);
     }
     (values[own], reads)
 }
 
 fn look(t: &Bound, l: &LookUp, quad: &[ScalarFragment; 4], values: &[Values; 4]) -> [Looked; 4] {
     let all = |c: &Coordinate| std::array::from_fn(|i| at(c, &quad[i], &values[i]));
-    let words = |(bits, read): (u32, u64)| (halves(bits), read);
+    let words = |(bits, read): (u32, Vec<TexelRead>)| (halves(bits), read);
     let integers = |t: &TexelAt| quad.each_ref().map(|f| integer(t, f));
     match &l.kind {
         LookUpKind::Sample(c) => {

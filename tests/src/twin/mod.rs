@@ -16,6 +16,7 @@ mod depth;
 mod image;
 mod lane_look_up;
 mod lanes;
+mod log;
 mod look_up;
 mod plane;
 mod program;
@@ -27,12 +28,13 @@ mod varying;
 mod vertex;
 
 pub use case::{
-    ColorImage, ColorUse, DepthImage, DepthUse, Outcome, PassOutcome, Tier, TwinCase, TwinDraw,
-    TwinPass, VertexSource,
+    ColorImage, ColorUse, DepthImage, DepthUse, EventDetails, Log, Look, Outcome, PassOutcome,
+    Tier, TwinCase, TwinDraw, TwinPass, VertexSource,
 };
 pub use convert::{div255_round, f16_bits, unorm8};
 pub use coverage::covered_pixels;
+pub use log::BlockHash;
 pub use look_up::{Coordinate, LookUp, LookUpKind, MAX_LOOK_UPS, Origin, TexelAt};
 pub use program::{ColorSource, DepthSource, Discard, Program};
-pub use render::{render, render_with};
+pub use render::{render, render_logging, render_with};
 pub use texture::{TextureSource, TextureUse, TwinTexture, depth_image};

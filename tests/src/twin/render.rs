@@ -4,10 +4,11 @@ use gnomon_raster::state::{PrimitiveTopology, Viewport};
 use gnomon_raster::{BlockAccess, ClientTraffic, Counters, Format, LoadOp, StoreOp, Traffic};
 
 use super::block::{Block, DrawContext, TriangleContext};
-use super::case::{Outcome, PassOutcome, TwinCase, TwinDraw, TwinPass};
+use super::case::{EventDetails, Log, Outcome, PassOutcome, TwinCase, TwinDraw, TwinPass};
 use super::coverage::{ClipPlanes, DrawRect};
 use super::depth::{DepthPlane, Encoding, range};
 use super::image::{Images, depth_bytes, encode, texel_bytes};
+use super::log::{BlockLog, look};
 use super::setup::{Setup, Triangle};
 use super::texture::Bound;
 use super::varying::Varyings;
@@ -22,11 +23,17 @@ pub fn render(case: &TwinCase) -> Outcome {
 /// Renders a case, with zmin/zmax tests or without.
 #[must_use]
 pub fn render_with(case: &TwinCase, skip: bool) -> Outcome {
+    render_logging(case, skip, Log::default())
+}
+
+/// The same, and writes down what `log` asks for.
+#[must_use]
+pub fn render_logging(case: &TwinCase, skip: bool, log: Log) -> Outcome {
     let mut images = Images::new(case);
     let passes = case
         .passes
         .iter()
-        .map(|p| run_pass(case, p, skip, &mut images))
+        .map(|p| run_pass(case, p, skip, log, &mut images))
         .collect();
     let (depth, stencil) = images
         .depth
@@ -40,9 +47,24 @@ pub fn render_with(case: &TwinCase, skip: bool) -> Outcome {
     }
 }
 
-fn run_pass(case: &TwinCase, pass: &TwinPass, skip: bool, images: &mut Images) -> PassOutcome {
+/// The events of a pass so far, and more of them.
+#[derive(Default)]
+struct Events {
+    list: Vec<BlockAccess>,
+    details: EventDetails,
+}
+
+fn run_pass(
+    case: &TwinCase,
+    pass: &TwinPass,
+    skip: bool,
+    log: Log,
+    images: &mut Images,
+) -> PassOutcome {
+    let mut events = Events::default();
+    look(log, case.size[0], images, &mut events.details);
     let clear = load(case, pass, images);
-    let mut events = Vec::new();
+    look(log, case.size[0], images, &mut events.details);
     let mut draws = Vec::new();
     for (k, draw) in pass.draws.iter().enumerate() {
         draws.push(run_draw(
@@ -50,16 +72,19 @@ fn run_pass(case: &TwinCase, pass: &TwinPass, skip: bool, images: &mut Images) -
             pass,
             draw,
             k as u32,
-            skip,
+            (skip, log),
             images,
             &mut events,
         ));
     }
+    look(log, case.size[0], images, &mut events.details);
     store(pass, images);
+    look(log, case.size[0], images, &mut events.details);
     PassOutcome {
         draws,
         clear,
-        events,
+        events: events.list,
+        details: events.details,
     }
 }
 
@@ -123,9 +148,9 @@ fn run_draw(
     pass: &TwinPass,
     draw: &TwinDraw,
     number: u32,
-    skip: bool,
+    (skip, log): (bool, Log),
     images: &mut Images,
-    events: &mut Vec<BlockAccess>,
+    events: &mut Events,
 ) -> Counters {
     let viewport = draw.viewport.unwrap_or_else(|| whole(case.size));
     let depth_format = pass
@@ -141,6 +166,7 @@ fn run_draw(
         encoding: Encoding::of(depth_format),
         depth_range: range(&viewport),
         skip,
+        log,
         textures: draw
             .textures
             .iter()
@@ -148,7 +174,7 @@ fn run_draw(
             .collect(),
     };
     let mut counters = Counters::default();
-    let first_event = events.len();
+    let first_event = events.list.len();
     for triangle in triangles(draw, &Setup::new(&draw.primitive, viewport), &mut counters) {
         run_triangle(
             &ctx,
@@ -162,7 +188,7 @@ fn run_draw(
     }
     fixed_function_traffic(
         &mut counters,
-        &events[first_event..],
+        &events.list[first_event..],
         depth_format,
         pass,
         images,
@@ -222,7 +248,7 @@ fn run_triangle(
     draw: u32,
     images: &mut Images,
     counters: &mut Counters,
-    events: &mut Vec<BlockAccess>,
+    events: &mut Events,
 ) {
     let tri = TriangleContext {
         triangle,
@@ -246,18 +272,17 @@ fn run_triangle(
                 front: triangle.front,
                 ..BlockAccess::default()
             };
-            events.extend(
-                Block {
-                    ctx,
-                    tri: &tri,
-                    images,
-                    counters,
-                    access,
-                    x,
-                    y,
-                }
-                .run(),
-            );
+            let block = Block {
+                ctx,
+                tri: &tri,
+                images,
+                counters,
+                access,
+                x,
+                y,
+                log: BlockLog::new(events.list.len(), &mut events.details),
+            };
+            events.list.extend(block.run());
         }
     }
 }

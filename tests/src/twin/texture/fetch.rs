@@ -3,11 +3,11 @@
 use gnomon_raster::TextureDimension;
 
 use super::texel::{canonical, decode, first_word};
-use super::{Bound, Looked, is_depth};
+use super::{Bound, Looked, TexelRead, is_depth};
 
 impl Bound {
-    /// The stored texel, if it exists.
-    fn fetch(&self, [i, j, k]: [i32; 3], level: u32) -> Option<[u32; 4]> {
+    /// The stored texel, if it exists, and where it is.
+    fn fetch(&self, [i, j, k]: [i32; 3], level: u32) -> Option<([u32; 4], TexelRead)> {
         let layers = self.texture.images.get(level as usize)?;
         let [w, h, _] = self.texture.level_size(level as usize);
         let (j, k) = match self.texture.dimension {
@@ -17,30 +17,35 @@ impl Bound {
         };
         let within = |i: i32, n: u32| i64::from(i) >= 0 && i64::from(i) < i64::from(n);
         let exists = within(i, w) && within(j, h) && within(k, layers.len() as u32);
-        exists.then(|| self.stored(level as usize, k as usize, [i.into(), j.into()]))
+        let read = TexelRead {
+            level: level as usize,
+            layer: k as usize,
+            at: [i.into(), j.into()],
+        };
+        exists.then(|| (self.stored(read), read))
     }
 
     /// The four floats.
     pub(in crate::twin) fn fetch_texel(&self, at: [i32; 3], level: u32) -> Looked {
         match self.fetch(at, level) {
-            Some(t) => (canonical(decode(self.texture.format, t)), 1),
-            None => ([0.0; 4], 0),
+            Some((t, read)) => (canonical(decode(self.texture.format, t)), vec![read]),
+            None => ([0.0; 4], Vec::new()),
         }
     }
 
-    /// The stored bits of the first word, and whether there was a texel.
-    pub(in crate::twin) fn fetch_bits(&self, at: [i32; 3], level: u32) -> (u32, u64) {
+    /// The stored bits of the first word, and the texel if there was one.
+    pub(in crate::twin) fn fetch_bits(&self, at: [i32; 3], level: u32) -> (u32, Vec<TexelRead>) {
         match self.fetch(at, level) {
-            Some(t) => (first_word(self.texture.format, t), 1),
-            None => (0, 0),
+            Some((t, read)) => (first_word(self.texture.format, t), vec![read]),
+            None => (0, Vec::new()),
         }
     }
 
-    /// The stencil value, and whether there was one.
-    pub(in crate::twin) fn fetch_stencil(&self, at: [i32; 3], level: u32) -> (u32, u64) {
+    /// The stencil value, and the texel if there was one.
+    pub(in crate::twin) fn fetch_stencil(&self, at: [i32; 3], level: u32) -> (u32, Vec<TexelRead>) {
         match self.fetch(at, level) {
-            Some(t) if is_depth(self.texture.format) => (t[1], 1),
-            _ => (0, 0),
+            Some((t, read)) if is_depth(self.texture.format) => (t[1], vec![read]),
+            _ => (0, Vec::new()),
         }
     }
 }

@@ -5,7 +5,7 @@ use gnomon_raster::AddressMode;
 use super::super::image::channels;
 use super::axis::{Outside, Selected, select};
 use super::texel::{canonical, decode};
-use super::{Bound, Detail, Looked, cube};
+use super::{Bound, Detail, Looked, TexelRead, cube};
 
 /// `a + t·(b − a)`, channel by channel.
 fn mix(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
@@ -14,9 +14,9 @@ fn mix(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
 
 /// The only value, or the mixture of two; texels read add up.
 fn along(values: Vec<Looked>, weight: f32) -> Looked {
-    let read = values.iter().map(|v| v.1).sum();
-    match values[..] {
-        [(a, _), (b, _)] => (mix(a, b, weight), read),
+    let read = values.iter().flat_map(|v| v.1.clone()).collect();
+    match &values[..] {
+        [(a, _), (b, _)] => (mix(*a, *b, weight), read),
         _ => (values[0].0, read),
     }
 }
@@ -44,8 +44,8 @@ impl Bound {
         let size = self.texture.level_size(level);
         let [x, y, z] = [0, 1, 2].map(|k| self.axis(k, linear, at[k], size[k]));
         let texel = |i: Option<i64>, j: Option<i64>, k: Option<i64>| match (i, j, k) {
-            (Some(i), Some(j), Some(k)) => (self.texel(level, face, [i, j, k]), 1),
-            _ => (self.border(), 0),
+            (Some(i), Some(j), Some(k)) => self.texel(level, face, [i, j, k]),
+            _ => (self.border(), Vec::new()),
         };
         let row = |j, k| along(x.texels.iter().map(|&i| texel(i, j, k)).collect(), x.weight);
         let slice = |k| along(y.texels.iter().map(|&j| row(j, k)).collect(), y.weight);
@@ -72,14 +72,15 @@ impl Bound {
         select(edge, outside, linear, u, n)
     }
 
-    fn texel(&self, level: usize, face: usize, [i, j, k]: [i64; 3]) -> [f32; 4] {
+    fn texel(&self, level: usize, face: usize, [i, j, k]: [i64; 3]) -> Looked {
         let (layer, at) = if self.is_cube() {
             let n = i64::from(self.texture.level_size(level)[0]);
             cube::fold(face, [i, j], n)
         } else {
             (k as usize, [i, j])
         };
-        decode(self.texture.format, self.stored(level, layer, at))
+        let read = TexelRead { level, layer, at };
+        (decode(self.texture.format, self.stored(read)), vec![read])
     }
 
     fn border(&self) -> [f32; 4] {

@@ -64,8 +64,16 @@ pub(super) struct Bound {
     sampler: Sampler,
 }
 
-/// A looked-up value, and how many texels were read for it.
-pub(super) type Looked = ([f32; 4], u64);
+/// A texel that was read: level, layer, column and row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TexelRead {
+    pub(super) level: usize,
+    pub(super) layer: usize,
+    pub(super) at: [i64; 2],
+}
+
+/// A looked-up value, and the texels read for it.
+pub(super) type Looked = ([f32; 4], Vec<TexelRead>);
 
 impl Bound {
     pub(super) fn new(case: &TwinCase, images: &Images, used: &TextureUse) -> Self {
@@ -111,9 +119,10 @@ impl Bound {
     }
 
     /// A stored texel of a level.
-    fn stored(&self, level: usize, layer: usize, [x, y]: [i64; 2]) -> [u32; 4] {
-        let width = i64::from(self.texture.level_size(level)[0]);
-        self.texture.images[level][layer][(y * width + x) as usize]
+    fn stored(&self, read: TexelRead) -> [u32; 4] {
+        let [x, y] = read.at;
+        let width = i64::from(self.texture.level_size(read.level)[0]);
+        self.texture.images[read.level][read.layer][(y * width + x) as usize]
     }
 }
 

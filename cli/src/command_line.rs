@@ -6,8 +6,10 @@ use gnomon_pipeline::techniques::Registry;
 use crate::error::CliError;
 use crate::flags::ListArgs;
 use crate::verbs;
+use crate::verbs::bisect::BisectArgs;
 use crate::verbs::compare::CompareArgs;
 use crate::verbs::demo::DemoArgs;
+use crate::verbs::diff::DiffArgs;
 use crate::verbs::render::RenderArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
@@ -32,6 +34,10 @@ pub(crate) enum Verb {
     Compare(Box<CompareArgs>),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
+    /// Say what two traces differ in: state, the first draw and pixel, counters
+    Diff(DiffArgs),
+    /// Find the change of state that makes two traces differ
+    Bisect(BisectArgs),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -43,7 +49,9 @@ impl Verb {
     pub(crate) fn run(&self, registry: &Registry) -> Result<(), CliError> {
         match self {
             Self::Compare(args) => verbs::compare::run(args, registry),
+            Self::Bisect(args) => verbs::bisect::run(args),
             Self::Demo(args) => verbs::demo::run(args),
+            Self::Diff(args) => verbs::diff::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),

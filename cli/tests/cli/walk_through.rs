@@ -26,7 +26,11 @@ fn commands(page: &str) -> Vec<Shown> {
         if line.starts_with("```") {
             inside = line == "```console";
         } else if let Some(arguments) = line.strip_prefix("$ gnomon ").filter(|_| inside) {
-            all.push(Shown { arguments: arguments.to_owned(), output: Vec::new(), exit: 0 });
+            all.push(Shown {
+                arguments: arguments.to_owned(),
+                output: Vec::new(),
+                exit: 0,
+            });
         } else if inside {
             let last = all.last_mut().expect("a block begins with a command");
             match line.strip_prefix("# exit ") {
@@ -52,16 +56,28 @@ fn matches(shown: &[String], found: &[&str]) -> bool {
 }
 
 fn check(page: &str) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../docs").join(page);
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../docs")
+        .join(page);
     let text = fs::read_to_string(&path).unwrap();
     let commands = commands(&text);
-    assert!(commands.len() >= 4, "{page} shows {} commands", commands.len());
+    assert!(
+        commands.len() >= 4,
+        "{page} shows {} commands",
+        commands.len()
+    );
     let folder = Folder::new("walk-through");
     for shown in commands {
         let run = folder.gnomon(&shown.arguments);
         let output = run.stdout();
         let found: Vec<&str> = output.lines().collect();
-        assert_eq!(run.code(), shown.exit, "{}\n{output}{}", shown.arguments, run.stderr());
+        assert_eq!(
+            run.code(),
+            shown.exit,
+            "{}\n{output}{}",
+            shown.arguments,
+            run.stderr()
+        );
         assert!(
             matches(&shown.output, &found),
             "{page}: `gnomon {}` prints\n{output}\nbut the page says\n{}",

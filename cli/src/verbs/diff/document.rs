@@ -70,10 +70,14 @@ impl DiffDocument {
         Self {
             equal: found.none(),
             files: [0, 1].map(|side| inputs.sides[side].name.clone()),
-            made: made.map(|(name, values)| FieldDocument { name, values }).collect(),
+            made: made
+                .map(|(name, values)| FieldDocument { name, values })
+                .collect(),
             states: found.states.iter().map(StateDocument::new).collect(),
             first: found.first.as_ref().map(FirstDocument::new),
-            counters: counters.map(|(name, values)| CounterDocument { name, values }).collect(),
+            counters: counters
+                .map(|(name, values)| CounterDocument { name, values })
+                .collect(),
         }
     }
 }
@@ -83,9 +87,12 @@ impl StateDocument {
         let (texture, pass, draw, label) = match &of.place {
             Place::Texture { id, label } => (Some(*id), None, None, label),
             Place::Pass { numbers, label } => (None, Some(*numbers), None, label),
-            Place::Draw { passes, numbers, label, .. } => {
-                (None, Some(passes.map(Some)), Some(*numbers), label)
-            }
+            Place::Draw {
+                passes,
+                numbers,
+                label,
+                ..
+            } => (None, Some(passes.map(Some)), Some(*numbers), label),
         };
         Self {
             texture,

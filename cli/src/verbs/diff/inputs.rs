@@ -19,9 +19,16 @@ pub(crate) struct Side {
 impl Side {
     fn open(path: &Path, frame: usize, table: &ShaderTable) -> Result<Self, CliError> {
         let trace = Trace::open(path)?;
-        let named = |source| CliError::InTrace { path: path.to_owned(), source };
+        let named = |source| CliError::InTrace {
+            path: path.to_owned(),
+            source,
+        };
         Ok(Self {
-            name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            name: path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
             meta: trace.meta().clone(),
             frame: trace.recording(frame, table).map_err(named)?,
         })

@@ -1,7 +1,9 @@
 //! Compares two frames: how they were made, as data, in what they draw, in what they count.
 
 use gnomon_raster::{Gpu, GpuConfig, Recording, SubmitReport};
-use gnomon_traces::{DrawHashes, FirstDifference, StateDifference, compare_states, first_difference};
+use gnomon_traces::{
+    DrawHashes, FirstDifference, StateDifference, compare_states, first_difference,
+};
 
 use super::args::DiffArgs;
 use super::document::DiffDocument;
@@ -22,7 +24,10 @@ pub(super) struct Differences {
 
 impl Differences {
     pub(super) fn none(&self) -> bool {
-        self.made.is_empty() && self.states.is_empty() && self.first.is_none() && self.counters.is_empty()
+        self.made.is_empty()
+            && self.states.is_empty()
+            && self.first.is_none()
+            && self.counters.is_empty()
     }
 }
 
@@ -35,12 +40,19 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), CliError> {
     } else {
         output::print(&text::describe(&inputs, &found))?;
     }
-    if found.none() { Ok(()) } else { Err(CliError::Differs) }
+    if found.none() {
+        Ok(())
+    } else {
+        Err(CliError::Differs)
+    }
 }
 
 fn compare(inputs: &Inputs, config: GpuConfig) -> Result<Differences, CliError> {
     let frames = inputs.frames();
-    let hashes = [DrawHashes::of(frames[0], config)?, DrawHashes::of(frames[1], config)?];
+    let hashes = [
+        DrawHashes::of(frames[0], config)?,
+        DrawHashes::of(frames[1], config)?,
+    ];
     let reports = [totals(frames[0], config)?, totals(frames[1], config)?];
     Ok(Differences {
         made: differing_settings(inputs),
@@ -82,9 +94,14 @@ fn figures(report: &SubmitReport) -> Vec<(String, u64)> {
 
 fn differing_figures([a, b]: &[Vec<(String, u64)>; 2]) -> Vec<(String, [u64; 2])> {
     let of = |all: &[(String, u64)], name: &str| {
-        all.iter().find(|(n, _)| n == name).map_or(0, |(_, value)| *value)
+        all.iter()
+            .find(|(n, _)| n == name)
+            .map_or(0, |(_, value)| *value)
     };
-    let names = a.iter().chain(b.iter().filter(|(name, _)| !a.iter().any(|(n, _)| n == name)));
+    let names = a.iter().chain(
+        b.iter()
+            .filter(|(name, _)| !a.iter().any(|(n, _)| n == name)),
+    );
     let pairs = names.map(|(name, _)| (name.clone(), [of(a, name), of(b, name)]));
     pairs.filter(|(_, [x, y])| x != y).collect()
 }
@@ -96,11 +113,16 @@ fn differing_settings(inputs: &Inputs) -> Vec<(String, [Option<String>; 2])> {
         let mut all = meta.params.clone();
         all.insert("scene".to_owned(), meta.scene.clone());
         all.insert("technique".to_owned(), meta.technique.clone());
-        all.insert("size".to_owned(), format!("{}x{}", meta.size[0], meta.size[1]));
+        all.insert(
+            "size".to_owned(),
+            format!("{}x{}", meta.size[0], meta.size[1]),
+        );
         all.insert("time".to_owned(), meta.time.to_string());
         all
     });
-    let names = a.keys().chain(b.keys().filter(|name| !a.contains_key(*name)));
+    let names = a
+        .keys()
+        .chain(b.keys().filter(|name| !a.contains_key(*name)));
     let pairs = names.map(|name| (name.clone(), [a.get(name).cloned(), b.get(name).cloned()]));
     pairs.filter(|(_, [x, y])| x != y).collect()
 }

@@ -19,7 +19,11 @@ pub(super) fn describe(inputs: &Inputs, found: &Differences) -> String {
     if !found.made.is_empty() {
         text += "made\n";
         for (name, [x, y]) in &found.made {
-            text += &format!("  {name}: {} -> {}\n", shown(x.as_deref()), shown(y.as_deref()));
+            text += &format!(
+                "  {name}: {} -> {}\n",
+                shown(x.as_deref()),
+                shown(y.as_deref())
+            );
         }
     }
     text += &describe_states(&found.states);
@@ -27,7 +31,10 @@ pub(super) fn describe(inputs: &Inputs, found: &Differences) -> String {
     if !found.counters.is_empty() {
         text += "counters\n";
         for (name, [x, y]) in &found.counters {
-            text += &format!("  {name}: {x} -> {y} ({:+})\n", i128::from(*y) - i128::from(*x));
+            text += &format!(
+                "  {name}: {x} -> {y} ({:+})\n",
+                i128::from(*y) - i128::from(*x)
+            );
         }
     }
     text
@@ -79,7 +86,12 @@ fn place_text(place: &Place) -> String {
     match place {
         Place::Texture { id, label } => format!("texture {id} `{label}`"),
         Place::Pass { numbers, label } => format!("pass {} `{label}`", number(*numbers)),
-        Place::Draw { pass, numbers, label, .. } => {
+        Place::Draw {
+            pass,
+            numbers,
+            label,
+            ..
+        } => {
             format!("pass `{pass}`, draw {} `{label}`", number(*numbers))
         }
     }

@@ -8,5 +8,5 @@ pub(super) mod text;
 
 pub(crate) use args::DiffArgs;
 pub(super) use document::StateDocument;
-pub(super) use inputs::{Inputs, Side};
+pub(super) use inputs::Inputs;
 pub(crate) use run::run;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use gnomon_raster::{
     AccessBatch, AccessObserver, BlockAccess, BlockView, BlockWitness, ColorAttachment, ColorBlock,
     CommandList, DepthStencilAttachment, Draw, Error, Format, FragmentRecord, Gpu, GpuConfig,
-    IndexBuffer, RenderPass, RenderPipeline, ShadedBlock, Subresource, TexelAccess, TextureBinding,
-    TextureDescriptor, TextureId, VertexBuffer, Wants,
+    IndexBuffer, Recording, RenderPass, RenderPipeline, ShadedBlock, Subresource, TexelAccess,
+    TextureBinding, TextureDescriptor, TextureId, VertexBuffer, Wants,
 };
 
 use crate::twin::{
@@ -187,6 +187,19 @@ pub fn run_in_pieces(case: &TwinCase, config: GpuConfig) -> Result<Outcome, Erro
         }));
     }
     download(&gpu, &targets, passes)
+}
+
+/// A case as a recording, without outputs.
+///
+/// # Errors
+/// What the GPU refuses.
+pub fn recording(case: &TwinCase, config: GpuConfig) -> Result<Recording, Error> {
+    let mut gpu = Gpu::new(config)?;
+    let targets = upload(&mut gpu, case)?;
+    let mut recording = gpu.save()?;
+    let passes = case.passes.iter();
+    recording.list.passes = passes.map(|p| render_pass(p, &targets)).collect();
+    Ok(recording)
 }
 
 fn upload(gpu: &mut Gpu, case: &TwinCase) -> Result<Targets, Error> {

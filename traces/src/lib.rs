@@ -3,20 +3,25 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+mod difference;
 mod error;
 mod format;
+mod hashes;
+pub mod history;
 mod meta;
+mod prefix;
 pub mod profile;
 mod record;
 mod replay;
 mod run;
 mod shape;
 mod stream;
-mod tiles;
 mod trace;
 pub mod witness;
 
+pub use difference::*;
 pub use error::TraceError;
+pub use hashes::DrawHashes;
 pub use meta::{Meta, Mode};
 pub use record::{RecordOptions, Recorder, record};
 pub use replay::{DrawDifference, ReplayDepth, ReplayDifference, Replayed, replay};

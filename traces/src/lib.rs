@@ -16,7 +16,6 @@ mod replay;
 mod run;
 mod shape;
 mod stream;
-mod tiles;
 mod trace;
 pub mod witness;
 

@@ -1,5 +1,7 @@
 //! Where two frames first draw something different: the draw, the tile, the pixels.
 
+use std::collections::BTreeMap;
+
 use gnomon_raster::{CommandList, Error, Gpu, GpuConfig, Recording, Subresource, TextureId};
 
 use super::align::Pair;
@@ -98,18 +100,16 @@ fn all_draws(of: &Recording, pass: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..count).map(move |draw| [pass, draw])
 }
 
-/// The first tile, in rows, that a draw left different: column and row.
+/// The first tile, in rows, that a draw left different.
 fn differing_tile(hashes: [&DrawHashes; 2], place: Place) -> Option<[u16; 2]> {
-    let tiles = |side: usize| {
-        let at = place[side].into_iter();
-        at.flat_map(move |[pass, draw]| hashes[side].tiles(pass, draw))
+    let tiles = [0, 1].map(|side| place[side].and_then(|[p, d]| hashes[side].tiles(p, d)));
+    let [a, b] = tiles;
+    let known = a.into_iter().chain(b).flat_map(|t| t.keys());
+    let hash = |tiles: Option<&BTreeMap<[u16; 2], u64>>, at: &[u16; 2]| {
+        tiles.and_then(|t| t.get(at)).copied()
     };
-    let lone = |of: usize| {
-        let mut rest = tiles(of).filter(move |tile| !tiles(1 - of).any(|other| other == *tile));
-        rest.next().map(|(tile, _)| tile)
-    };
-    let first = lone(0).into_iter().chain(lone(1)).min();
-    first.map(|[row, column]| [column, row])
+    let differing = known.filter(|at| hash(a, at) != hash(b, at));
+    differing.min_by_key(|at| (at[1], at[0])).copied()
 }
 
 /// A GPU as it is right after a draw, and the pass that the draw is in.

@@ -9,6 +9,7 @@ use crate::verbs;
 use crate::verbs::compare::CompareArgs;
 use crate::verbs::demo::DemoArgs;
 use crate::verbs::render::RenderArgs;
+use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
@@ -30,6 +31,8 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
+    /// Show where a frame's work and bytes go, as one page to look at
+    Report(Box<ReportArgs>),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
     /// List the built-in scenes
@@ -45,6 +48,7 @@ impl Verb {
             Self::Compare(args) => verbs::compare::run(args, registry),
             Self::Demo(args) => verbs::demo::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
+            Self::Report(args) => verbs::report::run(args, registry),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),

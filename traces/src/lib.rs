@@ -3,7 +3,11 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+pub mod chrome;
+pub mod findings;
 pub mod history;
+pub mod maps;
+pub mod report;
 mod shape;
 
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};

@@ -5,9 +5,20 @@
 
 pub mod chrome;
 pub mod findings;
+mod difference;
+mod error;
+mod format;
+mod hashes;
+mod prefix;
+pub mod profile;
 pub mod history;
 pub mod maps;
 pub mod report;
 mod shape;
+pub mod witness;
 
+pub use difference::*;
+pub use error::TraceError;
+pub use hashes::DrawHashes;
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
+pub use witness::Witness;

@@ -4,15 +4,15 @@
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
 pub mod chrome;
-pub mod findings;
 mod difference;
 mod error;
+pub mod findings;
 mod format;
 mod hashes;
-mod prefix;
-pub mod profile;
 pub mod history;
 pub mod maps;
+mod prefix;
+pub mod profile;
 pub mod report;
 mod shape;
 pub mod witness;

@@ -94,10 +94,11 @@ fn targets(recording: &Recording, image: TextureId) -> Result<Vec<Targets>, Erro
     let mut known = 0;
     while known < images.len() {
         known = images.len();
-        for pass in passes.iter().filter(|p| on_any(p, &images[..known])) {
-            let new = attached(pass).filter(|i| !images.contains(i));
-            let new: Vec<_> = new.collect();
-            images.extend(new);
+        for pass in passes {
+            if on_any(pass, &images) {
+                let new: Vec<_> = attached(pass).filter(|i| !images.contains(i)).collect();
+                images.extend(new);
+            }
         }
     }
     let target = |pass: &RenderPass| Targets::new(recording, pass, on_any(pass, &images));

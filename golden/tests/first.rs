@@ -1,3 +1,5 @@
+//! A first test of a frame.
+
 use gnomon_golden::{assert_frame, triangles};
 use gnomon_raster::shader::ScalarFragmentOutput;
 

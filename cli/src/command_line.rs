@@ -11,6 +11,7 @@ use crate::verbs::compare::CompareArgs;
 use crate::verbs::demo::DemoArgs;
 use crate::verbs::diff::DiffArgs;
 use crate::verbs::render::RenderArgs;
+use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
@@ -32,6 +33,8 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
+    /// Show where a frame's work and bytes go, as one page to look at
+    Report(Box<ReportArgs>),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
     /// Say what two traces differ in: state, the first draw and pixel, counters
@@ -53,6 +56,7 @@ impl Verb {
             Self::Demo(args) => verbs::demo::run(args),
             Self::Diff(args) => verbs::diff::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
+            Self::Report(args) => verbs::report::run(args, registry),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),

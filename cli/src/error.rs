@@ -8,6 +8,7 @@ use gnomon_pipeline::measure::render::RenderError;
 use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
+use gnomon_traces::history::HistoryError;
 use thiserror::Error;
 
 /// Why a verb did not finish.
@@ -34,6 +35,9 @@ pub(crate) enum CliError {
     /// A claim cannot be measured.
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
+    /// A pixel has no history.
+    #[error(transparent)]
+    History(#[from] HistoryError),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {

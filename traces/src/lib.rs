@@ -3,14 +3,18 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+pub mod chrome;
 mod difference;
 mod error;
+pub mod findings;
 mod format;
 mod hashes;
 pub mod history;
-mod meta;
+pub mod maps;
 mod prefix;
 pub mod profile;
+pub mod report;
+mod meta;
 mod record;
 mod replay;
 mod run;

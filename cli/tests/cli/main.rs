@@ -9,6 +9,7 @@ mod draws;
 mod environment;
 mod overlays;
 mod render;
+mod report;
 mod reproduce;
 mod same_bits;
 mod sweep;

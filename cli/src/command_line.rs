@@ -7,7 +7,9 @@ use crate::error::CliError;
 use crate::flags::ListArgs;
 use crate::verbs;
 use crate::verbs::compare::CompareArgs;
+use crate::verbs::debug::DebugArgs;
 use crate::verbs::demo::DemoArgs;
+use crate::verbs::pixel::PixelArgs;
 use crate::verbs::render::RenderArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
@@ -32,6 +34,10 @@ pub(crate) enum Verb {
     Compare(Box<CompareArgs>),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
+    /// Show everything that happened to a pixel of a recorded frame
+    Pixel(Box<PixelArgs>),
+    /// Show a fragment's uniforms and varyings, and open its shader in a debugger
+    Debug(Box<DebugArgs>),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -44,6 +50,8 @@ impl Verb {
         match self {
             Self::Compare(args) => verbs::compare::run(args, registry),
             Self::Demo(args) => verbs::demo::run(args),
+            Self::Debug(args) => verbs::debug::run(args),
+            Self::Pixel(args) => verbs::pixel::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),

@@ -8,6 +8,8 @@ use gnomon_pipeline::measure::render::RenderError;
 use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
+use gnomon_traces::TraceError;
+use gnomon_traces::history::HistoryError;
 use thiserror::Error;
 
 /// Why a verb did not finish.
@@ -83,6 +85,12 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
+    /// A trace cannot be used.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// A pixel's history cannot be told.
+    #[error(transparent)]
+    History(#[from] HistoryError),
     /// A check of our own failed: a fault of the program or the machine.
     #[error("check failed: {0}")]
     Check(String),
@@ -92,7 +100,7 @@ impl CliError {
     /// 1 for a failed check, 2 for bad input.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Check(_) => 1,
+            Self::Check(_) | Self::History(HistoryError::Broken { .. }) => 1,
             _ => 2,
         }
     }

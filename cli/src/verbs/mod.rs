@@ -1,7 +1,9 @@
 //! One file or folder per verb.
 
 pub(crate) mod compare;
+pub(crate) mod debug;
 pub(crate) mod demo;
+pub(crate) mod pixel;
 pub(crate) mod render;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;

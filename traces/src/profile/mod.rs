@@ -1,0 +1,3 @@
+//! What the memory of other hardware would make of a frame's accesses.
+
+pub mod codec;

@@ -8,6 +8,7 @@ use gnomon_pipeline::measure::render::RenderError;
 use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
+use gnomon_traces::TraceError;
 use gnomon_traces::history::HistoryError;
 use thiserror::Error;
 
@@ -89,14 +90,14 @@ pub(crate) enum CliError {
     Stdout(std::io::Error),
     /// A trace cannot be read or replayed.
     #[error(transparent)]
-    Trace(#[from] gnomon_traces::TraceError),
+    Trace(#[from] TraceError),
     /// Something of a trace cannot be had.
     #[error("{}: {source}", .path.display())]
     InTrace {
         /// The file.
         path: PathBuf,
         /// What.
-        source: gnomon_traces::TraceError,
+        source: TraceError,
     },
     /// No cause of a difference is found.
     #[error(transparent)]
@@ -116,7 +117,7 @@ impl CliError {
     /// 1 for a failed check, 2 for bad input.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Check(_) | Self::Differs => 1,
+            Self::Check(_) | Self::Differs | Self::History(HistoryError::Broken { .. }) => 1,
             _ => 2,
         }
     }

@@ -10,6 +10,7 @@ mod flags;
 mod output;
 mod overlay;
 mod threads;
+mod traces;
 mod verbs;
 
 use std::ffi::OsString;

@@ -2,8 +2,10 @@
 
 pub(crate) mod bisect;
 pub(crate) mod compare;
+pub(crate) mod debug;
 pub(crate) mod demo;
 pub(crate) mod diff;
+pub(crate) mod pixel;
 pub(crate) mod render;
 pub(crate) mod report;
 pub(crate) mod reproduce;

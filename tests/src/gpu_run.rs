@@ -205,6 +205,19 @@ pub fn run_in_pieces(case: &TwinCase, config: GpuConfig) -> Result<Outcome, Erro
     download(&gpu, &targets, passes)
 }
 
+/// A case as a recording, without outputs.
+///
+/// # Errors
+/// What the GPU refuses.
+pub fn recording(case: &TwinCase, config: GpuConfig) -> Result<Recording, Error> {
+    let mut gpu = Gpu::new(config)?;
+    let targets = upload(&mut gpu, case)?;
+    let mut recording = gpu.save()?;
+    let passes = case.passes.iter();
+    recording.list.passes = passes.map(|p| render_pass(p, &targets)).collect();
+    Ok(recording)
+}
+
 fn upload(gpu: &mut Gpu, case: &TwinCase) -> Result<Targets, Error> {
     let [w, h] = case.size;
     let mut color = Vec::new();

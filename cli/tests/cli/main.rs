@@ -5,6 +5,7 @@ mod attack;
 mod bad_input;
 mod common;
 mod compare;
+mod draws;
 mod environment;
 mod overlays;
 mod render;

@@ -85,6 +85,22 @@ impl Format {
         }
     }
 
+    /// Raw channels of a colour that is stored as a shader's output or a clear would be.
+    /// Zeros for depth formats.
+    #[must_use]
+    pub fn stored_color(self, color: [f32; 4]) -> [u32; 4] {
+        match self.is_depth_stencil() {
+            true => [0; 4],
+            false => encode(self, color),
+        }
+    }
+
+    /// A depth as it is stored: the D24 integer, or the bits of a float.
+    #[must_use]
+    pub fn stored_depth(self, depth: f32) -> u32 {
+        encode_depth(self, depth)
+    }
+
     /// Whether values are integers that are not normalised.
     #[must_use]
     pub fn is_integer(self) -> bool {

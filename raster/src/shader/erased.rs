@@ -20,6 +20,7 @@ pub(crate) trait ErasedVertexShader: Send + Sync {
     fn identity(&self) -> Option<ShaderIdentity> {
         None
     }
+    fn type_name(&self) -> &'static str;
 }
 
 pub(crate) trait ErasedFragmentShader: Send + Sync {
@@ -29,6 +30,7 @@ pub(crate) trait ErasedFragmentShader: Send + Sync {
     fn identity(&self) -> Option<ShaderIdentity> {
         None
     }
+    fn type_name(&self) -> &'static str;
 }
 
 /// A shader whose stage says what it is; all else goes to the shader.
@@ -37,6 +39,10 @@ pub(super) struct NamedShader<S>(pub(super) S);
 impl<V: VertexShader> ErasedVertexShader for V {
     fn varyings(&self) -> &[Interpolation] {
         VertexShader::varyings(self)
+    }
+
+    fn type_name(&self) -> &'static str {
+        core::any::type_name::<V>()
     }
 
     fn shade_batch(
@@ -54,6 +60,10 @@ impl<F: FragmentShader> ErasedFragmentShader for F {
         FragmentShader::outputs(self)
     }
 
+    fn type_name(&self) -> &'static str {
+        core::any::type_name::<F>()
+    }
+
     fn constant(&self) -> Option<[f32; 4]> {
         FragmentShader::constant(self)
     }
@@ -66,6 +76,10 @@ impl<F: FragmentShader> ErasedFragmentShader for F {
 impl<V: VertexShader + Uniforms + Named> ErasedVertexShader for NamedShader<V> {
     fn varyings(&self) -> &[Interpolation] {
         VertexShader::varyings(&self.0)
+    }
+
+    fn type_name(&self) -> &'static str {
+        core::any::type_name::<V>()
     }
 
     fn shade_batch(
@@ -85,6 +99,10 @@ impl<V: VertexShader + Uniforms + Named> ErasedVertexShader for NamedShader<V> {
 impl<F: FragmentShader + Uniforms + Named> ErasedFragmentShader for NamedShader<F> {
     fn outputs(&self) -> FragmentOutputs {
         FragmentShader::outputs(&self.0)
+    }
+
+    fn type_name(&self) -> &'static str {
+        core::any::type_name::<F>()
     }
 
     fn constant(&self) -> Option<[f32; 4]> {

@@ -69,6 +69,12 @@ impl FragmentStage {
         self.0.outputs()
     }
 
+    /// The Rust type of its shader, for debuggers.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        self.0.type_name()
+    }
+
     /// The colour of attachment 0, where every fragment has the same
     /// ([`FragmentShader::constant`]).
     #[must_use]
@@ -78,6 +84,12 @@ impl FragmentStage {
 }
 
 impl VertexStage {
+    /// The Rust type of its shader, for debuggers.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        self.0.type_name()
+    }
+
     /// How each varying is interpolated.
     #[must_use]
     pub fn varyings(&self) -> &[Interpolation] {

@@ -111,6 +111,12 @@ impl SimdLevel {
         self.token.name()
     }
 
+    /// The Rust type of the token that shaders are compiled for, for debuggers.
+    #[must_use]
+    pub fn type_name(self) -> &'static str {
+        with_lanes!(self, l => core::any::type_name_of_val(&l))
+    }
+
     pub(crate) fn token(self) -> Token {
         self.token
     }

@@ -380,6 +380,7 @@ fn listened<L: Lanes, const D24: bool>(
     let probed = listen::probed_pixel(env, place, mask).map(
         #[inline(always)]
         |pixel| {
+            listen::reach_probed_fragment(pixel);
             let packet = plane.packet(l, pixel / LANES).to_array();
             Probed::new(env, place, pixel, packet[pixel % LANES] as u32)
         },

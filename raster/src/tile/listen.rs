@@ -60,6 +60,13 @@ pub(super) fn probed_pixel(env: &Env<'_, '_>, place: Place, covered: u64) -> Opt
     (covered >> pixel & 1 != 0).then_some(pixel)
 }
 
+/// Where a debugger can stop: a fragment of the probed pixel comes next, in the order in
+/// which observers are told of them.
+#[inline(never)]
+pub(super) fn reach_probed_fragment(pixel: usize) {
+    core::hint::black_box(pixel);
+}
+
 impl Probed {
     /// Before anything is done to the block.
     pub(super) fn new(env: &Env<'_, '_>, place: Place, pixel: usize, depth: u32) -> Self {

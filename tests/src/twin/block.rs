@@ -339,6 +339,7 @@ impl Block<'_> {
 
     fn stencil_operation(&mut self, op: StencilOperation, f: &Fragment) {
         let (face, reference) = (*self.face(), self.reference());
+        self.log.operated(f, op);
         if modifies(op, &face) {
             self.access.stencil_read |= f.bit;
         }

@@ -1,7 +1,7 @@
 //! What the twin draws: a closed description from which a command list is built too.
 
 use gnomon_raster::state::{
-    ColorTargetState, DepthStencilState, PrimitiveState, ScissorRect, Viewport,
+    ColorTargetState, DepthStencilState, PrimitiveState, ScissorRect, StencilOperation, Viewport,
 };
 use gnomon_raster::{
     BlockAccess, ClientTraffic, Counters, Format, FragmentRecord, LoadOp, ShadedBlock, StoreOp,
@@ -206,6 +206,20 @@ pub struct EventDetails {
     pub outputs: Vec<ShadedBlock>,
     /// Where `outputs` point.
     pub values: Vec<u32>,
+    /// The stencil operation of each of `fragments`; only the twin tells.
+    pub operations: Vec<Option<StencilOperation>>,
+    /// The probed pixel before and after load operations, before and after store
+    /// operations; only the twin tells.
+    pub looks: Vec<Look>,
+}
+
+/// What a pixel holds in all images of a case.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Look {
+    /// Raw channels by image.
+    pub color: Vec<[u32; 4]>,
+    /// Depth and stencil as stored, if there is such an image.
+    pub depth: Option<(u32, u8)>,
 }
 
 /// What the twin writes down beside events and outcome.

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use gnomon_raster::shader::ScalarFragmentOutput;
+use gnomon_raster::state::StencilOperation;
 use gnomon_raster::{FragmentEnd, FragmentRecord, ShadedBlock, TexelAccess};
 
 use super::block::{Block, Fragment};
-use super::case::EventDetails;
+use super::case::{EventDetails, Log, Look};
+use super::image::Images;
 use super::look_up::Reads;
 
 /// A hash of a block's pixels: those inside the image, row by row, all attachments' values
@@ -36,6 +38,7 @@ pub(super) struct BlockLog<'a> {
     shaded: Option<ShadedBlock>,
     /// The bit of the probed pixel and what happens to it.
     record: Option<(u64, FragmentRecord)>,
+    operation: Option<StencilOperation>,
 }
 
 impl<'a> BlockLog<'a> {
@@ -46,6 +49,7 @@ impl<'a> BlockLog<'a> {
             texels: BTreeMap::new(),
             shaded: None,
             record: None,
+            operation: None,
         }
     }
 
@@ -76,8 +80,18 @@ impl<'a> BlockLog<'a> {
         }
     }
 
+    /// A stencil operation is applied to a fragment.
+    pub(super) fn operated(&mut self, f: &Fragment, op: StencilOperation) {
+        if self.record_of(f).is_some() {
+            self.operation = Some(op);
+        }
+    }
+
     /// Hands everything over.
     pub(super) fn end(self) {
+        if self.record.is_some() {
+            self.to.operations.push(self.operation);
+        }
         for ([slot, level, layer, y, x], (texels, taps)) in self.texels {
             self.to.texels.push(TexelAccess {
                 event: self.event,
@@ -92,6 +106,16 @@ impl<'a> BlockLog<'a> {
         self.to.outputs.extend(self.shaded);
         self.to.fragments.extend(self.record.map(|(_, r)| r));
     }
+}
+
+/// Takes down what the probed pixel of images `width` wide holds now.
+pub(super) fn look(log: Log, width: u32, images: &Images, to: &mut EventDetails) {
+    let Some([x, y]) = log.probe else { return };
+    let at = y as usize * width as usize + x as usize;
+    to.looks.push(Look {
+        color: images.color.iter().map(|i| i.texels[at]).collect(),
+        depth: images.depth.as_ref().map(|d| (d.depth[at], d.stencil[at])),
+    });
 }
 
 fn bits(v: f32) -> u32 {

@@ -28,8 +28,8 @@ mod varying;
 mod vertex;
 
 pub use case::{
-    ColorImage, ColorUse, DepthImage, DepthUse, EventDetails, Log, Outcome, PassOutcome, Tier,
-    TwinCase, TwinDraw, TwinPass, VertexSource,
+    ColorImage, ColorUse, DepthImage, DepthUse, EventDetails, Log, Look, Outcome, PassOutcome,
+    Tier, TwinCase, TwinDraw, TwinPass, VertexSource,
 };
 pub use convert::{div255_round, f16_bits, unorm8};
 pub use coverage::covered_pixels;

@@ -8,7 +8,7 @@ use super::case::{EventDetails, Log, Outcome, PassOutcome, TwinCase, TwinDraw, T
 use super::coverage::{ClipPlanes, DrawRect};
 use super::depth::{DepthPlane, Encoding, range};
 use super::image::{Images, depth_bytes, encode, texel_bytes};
-use super::log::BlockLog;
+use super::log::{BlockLog, look};
 use super::setup::{Setup, Triangle};
 use super::texture::Bound;
 use super::varying::Varyings;
@@ -61,8 +61,10 @@ fn run_pass(
     log: Log,
     images: &mut Images,
 ) -> PassOutcome {
-    let clear = load(case, pass, images);
     let mut events = Events::default();
+    look(log, case.size[0], images, &mut events.details);
+    let clear = load(case, pass, images);
+    look(log, case.size[0], images, &mut events.details);
     let mut draws = Vec::new();
     for (k, draw) in pass.draws.iter().enumerate() {
         draws.push(run_draw(
@@ -75,7 +77,9 @@ fn run_pass(
             &mut events,
         ));
     }
+    look(log, case.size[0], images, &mut events.details);
     store(pass, images);
+    look(log, case.size[0], images, &mut events.details);
     PassOutcome {
         draws,
         clear,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::flags::{EnvArgs, GpuArgs, SceneArgs, parse_setting, parse_size, parse_time};
 use crate::overlay::OverlayKind;
@@ -50,12 +50,26 @@ pub(crate) struct RenderArgs {
     /// Print one JSON document on stdout, the summary on stderr
     #[arg(long)]
     pub(crate) json: bool,
+    /// What the JSON document has work of, besides the frame: each pass, or each pass
+    /// and each draw
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = Per::Pass, requires = "json")]
+    pub(crate) per: Per,
+    /// Also print what each draw counted, in full numbers, in the order of submission
+    #[arg(long, conflicts_with = "frames")]
+    pub(crate) draws: bool,
     /// A map that lights the scene.
     #[command(flatten)]
     pub(crate) environment: EnvArgs,
     /// Most area lights fitted to the map, 1 to 1024 [default: 30]
     #[arg(long, value_name = "N", requires = "env")]
     pub(crate) lights: Option<usize>,
+}
+
+/// What has work of its own in the JSON document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Per {
+    Pass,
+    Draw,
 }
 
 fn parse_rate(text: &str) -> Result<f64, String> {

@@ -1,0 +1,4 @@
+//! The file format.
+
+pub(crate) mod file;
+pub(crate) mod section;

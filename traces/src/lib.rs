@@ -7,9 +7,9 @@ mod difference;
 mod error;
 mod format;
 mod hashes;
+pub mod history;
 mod prefix;
 pub mod profile;
-pub mod history;
 mod shape;
 pub mod witness;
 

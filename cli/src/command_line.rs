@@ -8,7 +8,11 @@ use crate::flags::ListArgs;
 use crate::verbs;
 use crate::verbs::compare::CompareArgs;
 use crate::verbs::demo::DemoArgs;
+use crate::verbs::dump::DumpArgs;
+use crate::verbs::info::InfoArgs;
+use crate::verbs::record::RecordArgs;
 use crate::verbs::render::RenderArgs;
+use crate::verbs::replay::ReplayArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
@@ -30,6 +34,14 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
+    /// Record frames of a scene in a trace, to be replayed and looked into
+    Record(Box<RecordArgs>),
+    /// Draw a frame of a trace again and verify that it is what it was
+    Replay(ReplayArgs),
+    /// Say what is in a trace; no shader is needed
+    Info(InfoArgs),
+    /// Print the commands of a trace, a JSON document a line
+    Dump(DumpArgs),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
     /// List the built-in scenes
@@ -45,6 +57,10 @@ impl Verb {
             Self::Compare(args) => verbs::compare::run(args, registry),
             Self::Demo(args) => verbs::demo::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
+            Self::Record(args) => verbs::record::run(args, registry),
+            Self::Replay(args) => verbs::replay::run(args),
+            Self::Info(args) => verbs::info::run(args),
+            Self::Dump(args) => verbs::dump::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),

@@ -8,6 +8,7 @@ use gnomon_pipeline::measure::render::RenderError;
 use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
+use gnomon_traces::TraceError;
 use thiserror::Error;
 
 /// Why a verb did not finish.
@@ -34,6 +35,12 @@ pub(crate) enum CliError {
     /// A claim cannot be measured.
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
+    /// A trace cannot be had, written or replayed.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// A replay is not what was recorded.
+    #[error("{0}")]
+    ReplayDiffers(String),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {
@@ -92,7 +99,7 @@ impl CliError {
     /// 1 for a failed check, 2 for bad input.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Check(_) => 1,
+            Self::Check(_) | Self::ReplayDiffers(_) => 1,
             _ => 2,
         }
     }

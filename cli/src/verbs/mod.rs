@@ -2,7 +2,11 @@
 
 pub(crate) mod compare;
 pub(crate) mod demo;
+pub(crate) mod dump;
+pub(crate) mod info;
+pub(crate) mod record;
 pub(crate) mod render;
+pub(crate) mod replay;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;
 pub(crate) mod techniques;

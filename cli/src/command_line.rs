@@ -14,6 +14,10 @@ use crate::verbs::diff::DiffArgs;
 use crate::verbs::pixel::PixelArgs;
 use crate::verbs::render::RenderArgs;
 use crate::verbs::report::ReportArgs;
+use crate::verbs::dump::DumpArgs;
+use crate::verbs::info::InfoArgs;
+use crate::verbs::record::RecordArgs;
+use crate::verbs::replay::ReplayArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
@@ -37,6 +41,14 @@ pub(crate) enum Verb {
     Compare(Box<CompareArgs>),
     /// Show where a frame's work and bytes go, as one page to look at
     Report(Box<ReportArgs>),
+    /// Record frames of a scene in a trace, to be replayed and looked into
+    Record(Box<RecordArgs>),
+    /// Draw a frame of a trace again and verify that it is what it was
+    Replay(ReplayArgs),
+    /// Say what is in a trace; no shader is needed
+    Info(InfoArgs),
+    /// Print the commands of a trace, a JSON document a line
+    Dump(DumpArgs),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
     /// Say what two traces differ in: state, the first draw and pixel, counters
@@ -65,6 +77,10 @@ impl Verb {
             Self::Pixel(args) => verbs::pixel::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
             Self::Report(args) => verbs::report::run(args, registry),
+            Self::Record(args) => verbs::record::run(args, registry),
+            Self::Replay(args) => verbs::replay::run(args),
+            Self::Info(args) => verbs::info::run(args),
+            Self::Dump(args) => verbs::dump::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),

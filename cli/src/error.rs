@@ -39,6 +39,11 @@ pub(crate) enum CliError {
     /// A pixel has no history.
     #[error(transparent)]
     History(#[from] HistoryError),
+    /// A trace cannot be had, written or replayed.
+    Trace(#[from] TraceError),
+    /// A replay is not what was recorded.
+    #[error("{0}")]
+    ReplayDiffers(String),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {
@@ -88,9 +93,6 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
-    /// A trace cannot be read or replayed.
-    #[error(transparent)]
-    Trace(#[from] TraceError),
     /// Something of a trace cannot be had.
     #[error("{}: {source}", .path.display())]
     InTrace {
@@ -117,7 +119,10 @@ impl CliError {
     /// 1 for a failed check, 2 for bad input.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Check(_) | Self::Differs | Self::History(HistoryError::Broken { .. }) => 1,
+            Self::Check(_)
+            | Self::Differs
+            | Self::ReplayDiffers(_)
+            | Self::History(HistoryError::Broken { .. }) => 1,
             _ => 2,
         }
     }

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::flags::{EnvArgs, GpuArgs, SceneArgs, parse_setting, parse_size, parse_time};
+use crate::flags::{
+    EnvArgs, GpuArgs, SceneArgs, parse_rate, parse_setting, parse_size, parse_time,
+};
 use crate::overlay::OverlayKind;
 
 /// Flags of `render`.
@@ -70,11 +72,4 @@ pub(crate) struct RenderArgs {
 pub(crate) enum Per {
     Pass,
     Draw,
-}
-
-fn parse_rate(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
-        _ => Err("expected a number of frames per second above 0".to_owned()),
-    }
 }

@@ -15,7 +15,7 @@ use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
 use crate::overlay::{self, OverlayKind};
 use crate::verbs;
 
-const DEFAULT_SIZE: [u32; 2] = [800, 600];
+pub(crate) const DEFAULT_SIZE: [u32; 2] = [800, 600];
 
 /// Everything the command line asked for, checked.
 pub(super) struct RenderJob {

@@ -9,6 +9,7 @@ use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
 use gnomon_traces::history::HistoryError;
+use gnomon_traces::profile::ProfileError;
 use thiserror::Error;
 
 /// Why a verb did not finish.
@@ -38,6 +39,9 @@ pub(crate) enum CliError {
     /// A pixel has no history.
     #[error(transparent)]
     History(#[from] HistoryError),
+    /// A profile cannot be read.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {

@@ -6,8 +6,12 @@ use gnomon_pipeline::techniques::Registry;
 use crate::error::CliError;
 use crate::flags::ListArgs;
 use crate::verbs;
+use crate::verbs::bisect::BisectArgs;
 use crate::verbs::compare::CompareArgs;
+use crate::verbs::debug::DebugArgs;
 use crate::verbs::demo::DemoArgs;
+use crate::verbs::diff::DiffArgs;
+use crate::verbs::pixel::PixelArgs;
 use crate::verbs::render::RenderArgs;
 use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
@@ -35,6 +39,14 @@ pub(crate) enum Verb {
     Report(Box<ReportArgs>),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
+    /// Say what two traces differ in: state, the first draw and pixel, counters
+    Diff(DiffArgs),
+    /// Find the change of state that makes two traces differ
+    Bisect(BisectArgs),
+    /// Show everything that happened to a pixel of a recorded frame
+    Pixel(Box<PixelArgs>),
+    /// Show a fragment's uniforms and varyings, and open its shader in a debugger
+    Debug(Box<DebugArgs>),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -46,7 +58,11 @@ impl Verb {
     pub(crate) fn run(&self, registry: &Registry) -> Result<(), CliError> {
         match self {
             Self::Compare(args) => verbs::compare::run(args, registry),
+            Self::Bisect(args) => verbs::bisect::run(args),
             Self::Demo(args) => verbs::demo::run(args),
+            Self::Diff(args) => verbs::diff::run(args),
+            Self::Debug(args) => verbs::debug::run(args),
+            Self::Pixel(args) => verbs::pixel::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
             Self::Report(args) => verbs::report::run(args, registry),
             Self::Reproduce(args) => verbs::reproduce::run(args),

@@ -14,4 +14,5 @@ mod reproduce;
 mod same_bits;
 mod sweep;
 mod verbs;
+mod walk_through;
 mod wild;

@@ -114,6 +114,9 @@ pub struct Profile {
     pub summary: String,
     /// The order of accesses.
     pub order: Order,
+    /// Primitives of a draw that are rasterised together, block by block; 1 for one after
+    /// the other, in rows of blocks.
+    pub together: u32,
     /// The display reads the last pass's first colour attachment at the end.
     pub scanout: bool,
     /// Half-float attachments can be blended.
@@ -146,6 +149,7 @@ impl Profile {
             name: name.to_owned(),
             summary: f.text("summary")?,
             order: f.choice("order", &order)?,
+            together: f.number("primitives-together", 1..=1024)?,
             scanout: f.switch("scanout")?,
             blends_half: f.switch("blends-half-floats")?,
             hiz: hiz(&mut f)?,

@@ -10,6 +10,7 @@ use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
 use gnomon_traces::TraceError;
 use gnomon_traces::history::HistoryError;
+use gnomon_traces::profile::ProfileError;
 use thiserror::Error;
 
 /// Why a verb did not finish.
@@ -44,6 +45,9 @@ pub(crate) enum CliError {
     /// A replay is not what was recorded.
     #[error("{0}")]
     ReplayDiffers(String),
+    /// A profile cannot be read.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {

@@ -166,7 +166,7 @@ const tests = {
     assert.equal(await evaluate(`document.querySelectorAll("th button").length`), 0);
     await click(await middle($('label[for="s0m1"]')));
     assert.deepEqual(await shown(), ["overdraw"]);
-    for (const heading of ["Findings", "Logical bytes by pass and client", "Draws"]) {
+    for (const heading of ["Findings", "Bytes by pass and client", "Draws"]) {
       assert.ok(await evaluate(`document.body.innerText.includes(${JSON.stringify(heading)})`), heading);
     }
     await shoot("no-scripts");

@@ -1,5 +1,8 @@
 //! What is remarkable about a frame, in words, each sentence computed from its counters.
 
+use std::collections::BTreeMap;
+
+use crate::judged::Judged;
 use crate::report::{ClientBytes, DrawRow, FrameReport, PassRow};
 
 /// A sentence and what it is about.
@@ -27,6 +30,33 @@ pub fn findings(frame: &FrameReport, size: [u32; 2]) -> Vec<Finding> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// What a profile makes of a frame.
+#[must_use]
+pub fn profile_findings(frame: &FrameReport, judged: &Judged) -> Vec<Finding> {
+    let (dram, logical) = (judged.frame.bytes(), frame.bytes());
+    let mut reasons = BTreeMap::<&str, u64>::new();
+    for draw in &judged.frame.draws {
+        if let Some(reason) = &draw.hiz_disabled {
+            *reasons.entry(reason).or_default() += 1;
+        }
+    }
+    let off: u64 = reasons.values().sum();
+    let listed = reasons.iter().map(|(reason, n)| format!("{reason}, {n}"));
+    let listed = listed.collect::<Vec<_>>().join("; ");
+    let because = if off > 0 {
+        format!(" ({listed})")
+    } else {
+        String::new()
+    };
+    let text = format!(
+        "Under {}, memory moves {dram} bytes, {} of the logical ones; HiZ is off for {off} of {} draws{because}.",
+        judged.profile,
+        percent(dram, logical),
+        judged.frame.draws.len()
+    );
+    finding("profile", text).into_iter().collect()
 }
 
 fn finding(code: &'static str, text: String) -> Option<Finding> {

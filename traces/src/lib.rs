@@ -10,6 +10,7 @@ pub mod findings;
 mod format;
 mod hashes;
 pub mod history;
+pub mod judged;
 pub mod maps;
 mod meta;
 mod prefix;

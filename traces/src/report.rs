@@ -50,7 +50,7 @@ pub struct DrawRow {
     /// Logical bytes.
     pub clients: Vec<ClientBytes>,
     /// Why zmin/zmax of blocks were not used; `None` where they were.
-    pub hiz_disabled: Option<&'static str>,
+    pub hiz_disabled: Option<String>,
 }
 
 impl DrawRow {
@@ -160,7 +160,7 @@ fn clients(counts: &[ClientTraffic]) -> Vec<ClientBytes> {
 }
 
 /// Why Gnomon's own zmin/zmax do not skip work of a draw.
-fn hiz_disabled(draw: &DrawShape, has_depth: bool, skip: bool) -> Option<&'static str> {
+fn hiz_disabled(draw: &DrawShape, has_depth: bool, skip: bool) -> Option<String> {
     let depth = &draw.depth_stencil.depth;
     let reasons = [
         (!has_depth, "no depth attachment"),
@@ -173,5 +173,5 @@ fn hiz_disabled(draw: &DrawShape, has_depth: bool, skip: bool) -> Option<&'stati
         ),
     ];
     let found = reasons.into_iter().find(|(holds, _)| *holds);
-    found.map(|(_, reason)| reason)
+    found.map(|(_, reason)| reason.to_owned())
 }

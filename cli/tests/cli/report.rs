@@ -114,7 +114,7 @@ fn techniques_are_compared() {
 #[test]
 fn the_timeline_adds_up() {
     let folder = Folder::new("report-chrome");
-    page(&folder, "--chrome a.json");
+    page(&folder, "--chrome a.json --profile none");
     let text = std::fs::read_to_string(folder.path("a.json")).unwrap();
     let trace: Value = serde_json::from_str(&text).unwrap();
     let events = trace["traceEvents"].as_array().unwrap();
@@ -180,4 +180,38 @@ fn maps_add_up_to_the_counters() {
             &format!("vertices have no pixel: {bytes} in all"),
         ],
     );
+}
+
+/// Reasons against HiZ stand beside the draws, and each profile beside logical bytes.
+#[test]
+fn profiles_judge_the_frame() {
+    let folder = Folder::new("report-profiles");
+    let fail = "--technique shadow-volumes:method=zfail:color-format=rgba8";
+    let page = page(
+        &folder,
+        &format!("{fail} --profile imr-2003,tbr-mali --chrome a.json"),
+    );
+    assert_has(
+        &page,
+        &[
+            "imr-2003 HiZ",
+            "off: depth-fail operation",
+            "Under imr-2003, memory moves",
+            "Bytes to and from memory under tbr-mali",
+            "· tbr-mali",
+        ],
+    );
+    let text = std::fs::read_to_string(folder.path("a.json")).unwrap();
+    assert!(text.contains("imr-2003 DRAM kilobytes so far, not time"));
+    folder
+        .gnomon(&format!("{SHOT} --out b.html --profile imr-1999"))
+        .refused(&["imr-1999", "imr-2008"]);
+}
+
+/// Hardware that cannot do what the frame does says so on the page.
+#[test]
+fn a_profile_that_cannot_is_told() {
+    let folder = Folder::new("report-refused");
+    let page = page(&folder, "--profile imr-2003,imr-2008");
+    assert_has(&page, &["Not judged: profile `imr-2003`", "Under imr-2008"]);
 }

@@ -2,16 +2,53 @@
 
 use std::fmt::Write;
 
+use gnomon_traces::judged::Judged;
 use gnomon_traces::report::{ClientBytes, FrameReport};
 
 use super::escape;
 
-/// A bar for each pass and one for the frame; each segment is a client.
-pub(crate) fn passes(frame: &FrameReport) -> String {
-    let largest = frame.passes.iter().map(|p| p.bytes()).max().unwrap_or(0);
-    let clients = frame.clients();
-    let mut out = "<h3>Logical bytes by pass and client</h3>\n<div class=\"key\">".to_owned();
-    for c in &clients {
+/// Bars of each pass, logical bytes above those under each profile; each segment is a
+/// client, and all are of one scale.
+pub(crate) fn passes(frame: &FrameReport, judged: &[Judged]) -> String {
+    let frames = || std::iter::once(frame).chain(judged.iter().map(|j| &j.frame));
+    let largest = frames().flat_map(|f| &f.passes).map(|p| p.bytes()).max();
+    let largest = largest.unwrap_or(0);
+    let mut out = "<h3>Bytes by pass and client, logical beside each profile</h3>\n".to_owned();
+    out += &key("logical", frame);
+    for j in judged {
+        out += &key(&j.profile, &j.frame);
+    }
+    out += "<div class=\"bars\">\n";
+    let rows = frames().map(|f| f.passes.len()).max().unwrap_or(0);
+    for number in 0..rows {
+        out += &pass(number, frame, judged, largest);
+    }
+    out + "</div>\n"
+}
+
+/// The bars of one pass. Profiles may have an end of the frame behind all passes.
+fn pass(number: usize, frame: &FrameReport, judged: &[Judged], largest: u64) -> String {
+    let mut out = String::new();
+    if let Some(p) = frame.passes.get(number) {
+        out += &bar(&p.label, p.bytes(), largest, &p.clients);
+    }
+    for j in judged {
+        let Some(p) = j.frame.passes.get(number) else {
+            continue;
+        };
+        let name = match frame.passes.get(number) {
+            Some(_) => format!("· {}", j.profile),
+            None => format!("{}, {}", p.label, j.profile),
+        };
+        out += &bar(&name, p.bytes(), largest, &p.clients);
+    }
+    out
+}
+
+/// Sums of a frame's clients.
+fn key(name: &str, frame: &FrameReport) -> String {
+    let mut out = format!("<div class=\"key\"><b>{}</b>", escape(name));
+    for c in frame.clients() {
         let _ = write!(
             out,
             "<span><i class=\"{}\"></i>{} {}</span>",
@@ -20,15 +57,7 @@ pub(crate) fn passes(frame: &FrameReport) -> String {
             c.total()
         );
     }
-    let _ = writeln!(
-        out,
-        "<span>all {}</span></div>\n<div class=\"bars\">",
-        frame.bytes()
-    );
-    for pass in &frame.passes {
-        out += &bar(&pass.label, pass.bytes(), largest, &pass.clients);
-    }
-    out + "</div>\n"
+    out + &format!("<span>all {}</span></div>\n", frame.bytes())
 }
 
 /// A row: name, segments, sum.
@@ -58,7 +87,7 @@ fn segment(class: &str, amount: u64, of: u64, title: &str) -> String {
 /// The colour of a client.
 pub(crate) fn class(client: &str) -> &'static str {
     match client {
-        "z" => "c-z",
+        "z" | "zs" => "c-z",
         "stencil" => "c-stencil",
         "hiz" => "c-hiz",
         "vertex" | "index" => "c-vertex",

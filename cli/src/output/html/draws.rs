@@ -1,5 +1,6 @@
 //! The table of draws.
 
+use gnomon_traces::judged::Judged;
 use gnomon_traces::report::{DrawRow, FrameReport};
 
 use super::super::tables::Table;
@@ -9,11 +10,17 @@ use super::page;
 const MOST_ROWS: usize = 2000;
 
 /// Every draw in full numbers.
-pub(crate) fn table(frame: &FrameReport) -> String {
+pub(crate) fn table(frame: &FrameReport, judged: &[Judged]) -> String {
     let clients: Vec<String> = frame.clients().into_iter().map(|c| c.client).collect();
     let mut header: Vec<&str> = HEADER.to_vec();
     header.extend(clients.iter().map(String::as_str));
     header.push("bytes");
+    let of_profiles = judged.iter().flat_map(|j| {
+        let name = &j.profile;
+        [format!("{name} HiZ"), format!("{name} bytes")]
+    });
+    let of_profiles: Vec<String> = of_profiles.collect();
+    header.extend(of_profiles.iter().map(String::as_str));
     let title = match frame.draws.len() {
         n if n > MOST_ROWS => format!(
             "Draws: the {MOST_ROWS} of {n} that move most (all: gnomon render --json --per draw)"
@@ -24,7 +31,7 @@ pub(crate) fn table(frame: &FrameReport) -> String {
     let rows = chosen(&frame.draws);
     table
         .rows
-        .extend(rows.map(|(number, draw)| row(number, draw, &clients)));
+        .extend(rows.map(|(number, draw)| row(number, draw, &clients, judged)));
     page::table(&table)
 }
 
@@ -56,12 +63,9 @@ fn chosen(draws: &[DrawRow]) -> impl Iterator<Item = (usize, &DrawRow)> {
     all.into_iter()
 }
 
-fn row(number: usize, draw: &DrawRow, clients: &[String]) -> Vec<String> {
+fn row(number: usize, draw: &DrawRow, clients: &[String], judged: &[Judged]) -> Vec<String> {
     let c = &draw.counters;
     let f = &c.fragments;
-    let hiz = draw
-        .hiz_disabled
-        .map_or("used".to_owned(), |why| format!("off: {why}"));
     let counts = [
         c.primitives.input,
         f.generated,
@@ -82,9 +86,19 @@ fn row(number: usize, draw: &DrawRow, clients: &[String]) -> Vec<String> {
         draw.pass_label.clone(),
         draw.draw.to_string(),
         draw.label.clone(),
-        hiz,
+        hiz(draw),
     ];
     let numbers = counts.into_iter().chain(clients.iter().map(of));
     row.extend(numbers.chain([draw.bytes()]).map(|n| n.to_string()));
+    for j in judged {
+        let same = &j.frame.draws[number];
+        row.extend([hiz(same), same.bytes().to_string()]);
+    }
     row
+}
+
+/// Whether zmin/zmax were used, or why not.
+fn hiz(draw: &DrawRow) -> String {
+    let off = draw.hiz_disabled.as_ref();
+    off.map_or("used".to_owned(), |why| format!("off: {why}"))
 }

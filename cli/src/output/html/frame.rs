@@ -12,7 +12,7 @@ const MOST_COLUMNS: usize = 400;
 const HEIGHT: f64 = 120.0;
 
 /// A column for each draw, or for as many as share one.
-pub(crate) fn timeline(frame: &FrameReport) -> String {
+pub(crate) fn timeline(frame: &FrameReport, title: &str) -> String {
     let each = frame.draws.len().div_ceil(MOST_COLUMNS).max(1);
     let columns: Vec<&[DrawRow]> = frame.draws.chunks(each).collect();
     let sum = |draws: &[DrawRow]| draws.iter().map(DrawRow::bytes).sum::<u64>();
@@ -26,8 +26,9 @@ pub(crate) fn timeline(frame: &FrameReport) -> String {
         n => format!(" {n} draws share a column."),
     };
     format!(
-        "<h3>Logical bytes, draw after draw</h3>\n<figure class=\"timeline\"><svg viewBox=\"0 0 {} {HEIGHT}\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"bytes of each draw in order\">\n{bars}</svg>\n\
+        "<h3>{}, draw after draw</h3>\n<figure class=\"timeline\"><svg viewBox=\"0 0 {} {HEIGHT}\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"bytes of each draw in order\">\n{bars}</svg>\n\
          <figcaption>{} draws in the order of submission, clears left out; the highest column is {top} bytes.{shared}</figcaption></figure>\n",
+        escape(title),
         columns.len().max(1),
         frame.draws.len()
     )

@@ -29,8 +29,18 @@ pub(crate) struct ReportArgs {
     /// repeated
     #[arg(long = "pixel", value_name = "X,Y", value_parser = parse_pixel)]
     pub(crate) pixels: Vec<[u32; 2]>,
+    /// Profiles of hardware that judge the frame (see docs), or .toml files of your own;
+    /// none for none
+    #[arg(
+        long = "profile",
+        value_name = "P,...",
+        value_delimiter = ',',
+        default_value = "imr-2003,imr-2008,tbr-mali,tbr-adreno"
+    )]
+    pub(crate) profiles: Vec<String>,
     /// Also write draws and clients for the timeline of trace viewers such as Perfetto,
-    /// where bytes take the place of time; with one technique
+    /// where bytes take the place of time: logical ones, or the first profile's; with one
+    /// technique
     #[arg(long, value_name = "FILE.json")]
     pub(crate) chrome: Option<PathBuf>,
     /// Frames to time; the median is reported

@@ -1,14 +1,18 @@
 //! Draws each technique and gathers what the page shows.
 
+use std::path::Path;
+
 use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind, Score, shaded};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::Scene;
 use gnomon_traces::FrameShape;
-use gnomon_traces::findings::{Finding, findings};
+use gnomon_traces::findings::{Finding, findings, profile_findings};
 use gnomon_traces::history::{self, History, HistoryOptions};
+use gnomon_traces::judged::{Judged, judge};
 use gnomon_traces::maps::{Maps, observe};
+use gnomon_traces::profile::{Profile, ProfileError, profile};
 use gnomon_traces::report::FrameReport;
 
 use super::args::ReportArgs;
@@ -22,6 +26,9 @@ pub(super) struct Subject {
     pub(super) done: Rendered,
     pub(super) maps: Maps,
     pub(super) frame: FrameReport,
+    pub(super) judged: Vec<Judged>,
+    /// Profiles that cannot do what the frame does.
+    pub(super) refused: Vec<ProfileError>,
     pub(super) findings: Vec<Finding>,
     pub(super) histories: Vec<History>,
     /// Against the exact soft shadow, where there are several techniques.
@@ -59,11 +66,34 @@ pub(super) fn entries(args: &ReportArgs, registry: &Registry) -> Result<Vec<Entr
     given.into_iter().map(entry).collect()
 }
 
+/// The profiles that were asked for.
+pub(super) fn profiles(args: &ReportArgs) -> Result<Vec<Profile>, CliError> {
+    let named = args
+        .profiles
+        .iter()
+        .filter(|n| *n != "none" && !n.is_empty());
+    named.map(|name| read_profile(name)).collect()
+}
+
+fn read_profile(name: &str) -> Result<Profile, CliError> {
+    if !name.ends_with(".toml") {
+        return Ok(profile(name)?);
+    }
+    let text = std::fs::read_to_string(name).map_err(|e| CliError::Flag {
+        flag: "--profile",
+        value: name.to_owned(),
+        valid: format!("the file cannot be read: {e}"),
+    })?;
+    let stem = Path::new(name).file_stem().unwrap_or_default();
+    Ok(Profile::parse(&stem.to_string_lossy(), name, &text)?)
+}
+
 impl Subject {
     pub(super) fn new(
         entry: &Entry,
         scene: &Scene,
         settings: &RenderSettings,
+        profiles: &[Profile],
         pixels: &[[u32; 2]],
     ) -> Result<Self, CliError> {
         let done = render(scene, entry.technique, &entry.params, settings)?;
@@ -72,6 +102,16 @@ impl Subject {
         let gpu = |e| CliError::Render(gnomon_pipeline::measure::render::RenderError::Gpu(e));
         let (maps, report) = observe(recording, frame.outputs.color, settings.gpu).map_err(gpu)?;
         let frame = FrameReport::new(&FrameShape::of(recording), &report, settings.gpu);
+        let (judged, refused): (Vec<_>, Vec<_>) = judge(recording, &frame, profiles, settings.gpu)
+            .map_err(gpu)?
+            .into_iter()
+            .partition(Result::is_ok);
+        let judged: Vec<Judged> = judged.into_iter().flatten().collect();
+        let refused = refused.into_iter().filter_map(Result::err).collect();
+        let of_profiles: Vec<Finding> = judged
+            .iter()
+            .flat_map(|j| profile_findings(&frame, j))
+            .collect();
         let options = HistoryOptions {
             config: settings.gpu,
             image: None,
@@ -80,7 +120,12 @@ impl Subject {
         let histories = pixels.iter().map(history).collect::<Result<_, _>>()?;
         Ok(Self {
             label: entry.label.clone(),
-            findings: findings(&frame, settings.size),
+            findings: findings(&frame, settings.size)
+                .into_iter()
+                .chain(of_profiles)
+                .collect(),
+            judged,
+            refused,
             done,
             maps,
             frame,

@@ -26,7 +26,7 @@ pub(super) fn make(scene: &Scene, settings: &RenderSettings, subjects: &[Subject
     page::Page {
         title: format!("{}: where the work goes", scene.name),
         lead: format!(
-            "{width}×{height} pixels, {}. Bytes are logical: what the commands ask for, before any cache.",
+            "{width}×{height} pixels, {}. Logical bytes are what the commands ask for, before any cache; those under a profile go between caches and memory, as that hardware is modelled.",
             subjects.iter().map(|s| s.label.as_str()).collect::<Vec<_>>().join("; ")
         ),
         body,
@@ -49,11 +49,17 @@ fn section(number: usize, subject: &Subject) -> String {
     let findings = subject.findings.iter().map(|f| f.text.clone());
     let warnings = subject.done.warnings.iter();
     let warnings = warnings.map(|w| format!("Warning: {}: {}", w.code, w.message));
-    out += &page::list("Findings", &findings.chain(warnings).collect::<Vec<_>>());
-    out += &bars::passes(&subject.frame);
+    let refused = subject.refused.iter().map(|e| format!("Not judged: {e}."));
+    let lines: Vec<String> = findings.chain(refused).chain(warnings).collect();
+    out += &page::list("Findings", &lines);
+    out += &bars::passes(&subject.frame, &subject.judged);
     out += &bars::waterfall(&subject.frame);
-    out += &frame::timeline(&subject.frame);
-    out += &draws::table(&subject.frame);
+    out += &frame::timeline(&subject.frame, "Logical bytes");
+    for judged in &subject.judged {
+        let title = format!("Bytes to and from memory under {}", judged.profile);
+        out += &frame::timeline(&judged.frame, &title);
+    }
+    out += &draws::table(&subject.frame, &subject.judged);
     out + "</section>\n"
 }
 

@@ -2,7 +2,7 @@
 
 use gnomon_pipeline::measure::render::RenderSettings;
 use gnomon_pipeline::techniques::Registry;
-use gnomon_traces::chrome::chrome;
+use gnomon_traces::chrome::{ChromeTrace, chrome};
 
 use super::args::ReportArgs;
 use super::measure::{self, Subject};
@@ -21,6 +21,7 @@ pub(crate) fn run(args: &ReportArgs, registry: &Registry) -> Result<(), CliError
         files::check_extension("--chrome", path, "json")?;
     }
     let entries = measure::entries(args, registry)?;
+    let profiles = measure::profiles(args)?;
     check_chrome(args, entries.len())?;
     let scene = args.scene.open()?.at(args.time)?;
     let settings = RenderSettings {
@@ -33,7 +34,13 @@ pub(crate) fn run(args: &ReportArgs, registry: &Registry) -> Result<(), CliError
     let progress = Progress::new(entries.len() as u64 + 1);
     let mut subjects = Vec::new();
     for entry in &entries {
-        subjects.push(Subject::new(entry, &scene, &settings, &args.pixels)?);
+        subjects.push(Subject::new(
+            entry,
+            &scene,
+            &settings,
+            &profiles,
+            &args.pixels,
+        )?);
         progress.step();
     }
     measure::measure_errors(&scene, &settings, &entries, &mut subjects)?;
@@ -48,13 +55,21 @@ pub(crate) fn run(args: &ReportArgs, registry: &Registry) -> Result<(), CliError
         html.len()
     );
     if let Some(path) = &args.chrome {
-        let trace = chrome(&subjects[0].frame, "logical");
+        let trace = timeline(&subjects[0]);
         let text = serde_json::to_vec(&trace).map_err(|e| CliError::Stdout(e.into()))?;
         batch.stage(path, &text)?;
         told += &format!("wrote {} (timeline of bytes)\n", path.display());
     }
     batch.commit()?;
     output::print(&told)
+}
+
+/// Along the bytes of the first profile, or else along logical ones.
+fn timeline(subject: &Subject) -> ChromeTrace {
+    match subject.judged.first() {
+        Some(judged) => chrome(&judged.frame, &format!("{} DRAM", judged.profile)),
+        None => chrome(&subject.frame, "logical"),
+    }
 }
 
 fn check_chrome(args: &ReportArgs, techniques: usize) -> Result<(), CliError> {

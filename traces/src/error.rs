@@ -45,12 +45,14 @@ pub enum TraceError {
         reason: String,
     },
     /// A section that is needed is not there.
-    #[error("the trace has no section {tag}{}", .frame.map(|f| format!(" for frame {f}")).unwrap_or_default())]
+    #[error("the trace has no section {tag}{}{}", .frame.map(|f| format!(" for frame {f}")).unwrap_or_default(), .lost.as_ref().map(|l| format!(": {l}")).unwrap_or_default())]
     Missing {
         /// Its tag.
         tag: String,
         /// Of which frame.
         frame: Option<u32>,
+        /// What the file lost.
+        lost: Option<String>,
     },
     /// No such frame.
     #[error("frame {given} is not in the trace; it has frames 0 to {}", .count.saturating_sub(1))]
@@ -94,5 +96,15 @@ pub enum TraceError {
         frame: usize,
         /// Why.
         source: gnomon_raster::Error,
+    },
+    /// A shader panicked: its uniforms are none that it was made for.
+    #[error(
+        "frame {frame}: a shader stopped ({message}); the uniforms or the state in the trace are none that it can run with"
+    )]
+    Stopped {
+        /// The frame.
+        frame: usize,
+        /// What it said.
+        message: String,
     },
 }

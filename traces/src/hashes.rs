@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use gnomon_raster::{AccessBatch, AccessObserver, Error, Gpu, GpuConfig, Recording, Wants};
 
+use crate::format::v1::TileHash;
 use crate::witness::{Witness, hash_of};
 
 /// Side of a tile in 8×8 blocks.
-const TILE: u16 = 8;
+pub(crate) const TILE: u16 = 8;
 
 /// Hashes of what each draw left behind, by pass, draw, and tile of 64×64 pixels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -31,6 +32,21 @@ impl DrawHashes {
         };
         gpu.submit_observed(&recording.list, wants, &mut hashes)?;
         Ok(hashes.done())
+    }
+
+    /// Of each pass, its tiles by draw, column and row, as they are written down.
+    pub(crate) fn lists(&self) -> Vec<Vec<TileHash>> {
+        let list = |draws: &Vec<BTreeMap<[u16; 2], u64>>| {
+            let draws = draws.iter().enumerate();
+            let tiles = draws.flat_map(|(draw, tiles)| tiles.iter().map(move |t| (draw, t)));
+            let hash = |(draw, (tile, hash)): (usize, (&[u16; 2], &u64))| TileHash {
+                draw: draw as u32,
+                tile: *tile,
+                hash: *hash,
+            };
+            tiles.map(hash).collect()
+        };
+        self.passes.iter().map(list).collect()
     }
 
     /// Tiles that draw number `draw` of pass number `pass` wrote to.

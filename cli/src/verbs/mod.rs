@@ -1,8 +1,13 @@
 //! One file or folder per verb.
 
+pub(crate) mod bisect;
 pub(crate) mod compare;
+pub(crate) mod debug;
 pub(crate) mod demo;
+pub(crate) mod diff;
+pub(crate) mod pixel;
 pub(crate) mod render;
+pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;
 pub(crate) mod techniques;

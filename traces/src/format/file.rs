@@ -3,7 +3,7 @@
 //! Reading goes through the sections forwards and needs neither index nor footer: where
 //! a file was cut short, all that lies before the cut is there.
 
-use super::section::{Codec, Entry, Section};
+use super::section::{Codec, Entry, HEADER, Section};
 use crate::error::TraceError;
 
 /// As in PNG: a copy in text mode breaks it, and it is no text.
@@ -14,8 +14,8 @@ pub(crate) const MINOR: u16 = 0;
 const START: usize = 16;
 const INDEX: [u8; 4] = *b"INDX";
 
-/// The bytes of a file of `sections`, in their order.
-pub(crate) fn write(sections: &[Section]) -> Vec<u8> {
+/// The bytes of a file of packed sections, in their order.
+pub(crate) fn assemble<'a>(sections: impl IntoIterator<Item = &'a [u8]>) -> Vec<u8> {
     let mut file = MAGIC.to_vec();
     file.extend(MAJOR.to_le_bytes());
     file.extend(MINOR.to_le_bytes());
@@ -23,10 +23,9 @@ pub(crate) fn write(sections: &[Section]) -> Vec<u8> {
     let mut index = Vec::new();
     for section in sections {
         index.extend((file.len() as u64).to_le_bytes());
-        let start = file.len();
-        section.write(Codec::Zstd, &mut file);
         // The header says all that the index needs.
-        index.extend_from_slice(&file[start..start + super::section::HEADER]);
+        index.extend_from_slice(&section[..HEADER]);
+        file.extend_from_slice(section);
     }
     let at = file.len() as u64;
     let section = Section {
@@ -36,26 +35,27 @@ pub(crate) fn write(sections: &[Section]) -> Vec<u8> {
         part: 0,
         data: index,
     };
-    section.write(Codec::Raw, &mut file);
+    file.extend(section.pack(Codec::Raw));
     file.extend(at.to_le_bytes());
     file.extend(MAGIC);
     file
 }
 
 /// The sections of a file, and what is wrong with its end.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Contents {
     pub(crate) entries: Vec<Entry>,
     /// Why the file's end is not there, if it is not.
     pub(crate) lost: Option<String>,
 }
 
-/// Finds the sections of `file`.
+/// Finds the sections of `file`. None is unpacked, all have their hashes.
 pub(crate) fn read(file: &[u8]) -> Result<Contents, TraceError> {
     check_start(file)?;
     let mut entries = Vec::new();
     let mut at = START;
     while let Some(entry) = Entry::at(file, at) {
+        entry.check(file)?;
         at = entry.end().expect("checked with the header");
         if entry.tag == INDEX {
             let lost = index_faults(file, &entry, &entries, at)?;
@@ -63,8 +63,19 @@ pub(crate) fn read(file: &[u8]) -> Result<Contents, TraceError> {
         }
         entries.push(entry);
     }
+    if file.ends_with(&MAGIC) && file.len() > at {
+        let footer = file[at..].first_chunk().map(|b| u64::from_le_bytes(*b));
+        if let Some(index) = entries.iter().find(|e| Some(e.offset) == footer) {
+            return Err(index.wrong("the footer says that it is the index, its tag does not"));
+        }
+        return Err(TraceError::Section {
+            tag: "????".to_owned(),
+            offset: at as u64,
+            reason: "its header is damaged: tag, zeros or sizes cannot be right".to_owned(),
+        });
+    }
     let lost = Some(format!(
-        "the file ends, or is damaged, at byte {at} of {}; what comes after is lost",
+        "the file ends at byte {}, in what begins at byte {at}; that and all behind it is lost",
         file.len()
     ));
     Ok(Contents { entries, lost })
@@ -103,22 +114,28 @@ fn index_faults(
         return Err(index.wrong("an index has version 1, frame 0 and part 0"));
     }
     let listed = index.unpack(file)?.data;
-    let mut expected = Vec::new();
-    for entry in entries {
+    let (listed, rest) = listed.as_chunks::<{ 8 + HEADER }>();
+    for (entry, listed) in entries.iter().zip(listed) {
         let at = entry.offset as usize;
-        expected.extend(entry.offset.to_le_bytes());
-        expected.extend_from_slice(&file[at..at + super::section::HEADER]);
+        if listed[..8] != entry.offset.to_le_bytes() || listed[8..] != file[at..at + HEADER] {
+            return Err(entry.wrong("its header is not the one that the index lists"));
+        }
     }
-    if listed != expected {
+    if listed.len() != entries.len() || !rest.is_empty() {
         return Err(index.wrong("it does not list the sections that are there"));
     }
     let footer = index.offset.to_le_bytes().into_iter().chain(MAGIC);
-    if !file[end..].iter().copied().eq(footer) {
-        return Ok(Some(format!(
-            "the 16 bytes of the footer at byte {end} are damaged"
-        )));
+    if file[end..].iter().copied().eq(footer) {
+        return Ok(None);
     }
-    Ok(None)
+    match file.len() < end + 16 {
+        true => Ok(Some(format!("the footer at byte {end} is cut off"))),
+        false => Err(TraceError::Section {
+            tag: "footer".to_owned(),
+            offset: end as u64,
+            reason: "it is not 16 bytes that point at the index".to_owned(),
+        }),
+    }
 }
 
 #[cfg(test)]
@@ -138,6 +155,11 @@ mod tests {
             section(b"ZZZZ", 1, vec![5; 1000]),
             section(b"TRAF", 2, (0..=255).collect()),
         ]
+    }
+
+    fn write(sections: &[Section]) -> Vec<u8> {
+        let packed: Vec<_> = sections.iter().map(|s| s.pack(Codec::Zstd)).collect();
+        assemble(packed.iter().map(Vec::as_slice))
     }
 
     fn unpack(file: &[u8]) -> Result<Vec<Section>, TraceError> {
@@ -169,23 +191,28 @@ mod tests {
         }
     }
 
-    /// A flipped bit gives an error, a loss that is told, or is in nobody's bytes.
+    /// A flipped bit is an error that says where; of the start, what kind of file it is.
     #[test]
     fn every_flipped_bit_is_noticed() {
         let file = write(&sections());
-        let padding = |at: usize| file[at] == 0;
+        let starts: Vec<u64> = read(&file)
+            .unwrap()
+            .entries
+            .iter()
+            .map(|e| e.offset)
+            .collect();
         for at in 0..file.len() {
             for bit in 0..8 {
                 let mut bad = file.clone();
                 bad[at] ^= 1 << bit;
-                let noticed = match unpack(&bad) {
-                    Ok(found) => read(&bad).unwrap().lost.is_some() || found != sections(),
-                    Err(_) => true,
-                };
-                assert!(
-                    noticed || padding(at) || at == 10 || at == 11,
-                    "byte {at} bit {bit}"
-                );
+                match unpack(&bad) {
+                    Ok(_) => assert!(at == 10 || at == 11, "byte {at} bit {bit}"),
+                    Err(TraceError::Section { offset, .. }) => {
+                        let own = starts.iter().rev().find(|s| **s <= at as u64);
+                        assert!(offset >= *own.unwrap() && offset <= at as u64, "byte {at}");
+                    }
+                    Err(error) => assert!(at < START, "byte {at} bit {bit}: {error}"),
+                }
             }
         }
     }
@@ -203,6 +230,6 @@ mod tests {
         let mut long = file.clone();
         long[second + 24..second + 32].copy_from_slice(&u64::MAX.to_le_bytes());
         assert!(Entry::at(&long, second).is_none());
-        assert_eq!(read(&long).unwrap().entries.len(), 1);
+        assert!(read(&long).is_err());
     }
 }

@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::error::TraceError;
 
 /// Bytes of a section's header.
-pub(super) const HEADER: usize = 48;
+pub(crate) const HEADER: usize = 48;
 /// No section may unpack to more: what sizes promise is not believed beyond this.
 const MOST_RAW: u64 = 4 << 30;
 /// zstd cannot shrink anything further than this, so that a size that promises more lies.
@@ -56,8 +56,8 @@ pub(crate) struct Entry {
 }
 
 impl Section {
-    /// Appends the section to a file.
-    pub(crate) fn write(&self, codec: Codec, to: &mut Vec<u8>) {
+    /// The section as it lies in a file, wherever that is.
+    pub(crate) fn pack(&self, codec: Codec) -> Vec<u8> {
         let packed = match codec {
             Codec::Raw => None,
             Codec::Zstd => zstd::bulk::compress(&self.data, LEVEL).ok(),
@@ -66,6 +66,7 @@ impl Section {
             Some(bytes) if bytes.len() < self.data.len() => (1, bytes.as_slice()),
             _ => (0, self.data.as_slice()),
         };
+        let mut to = Vec::with_capacity((HEADER + stored.len()).next_multiple_of(8));
         to.extend(self.tag);
         to.extend(self.version.to_le_bytes());
         to.extend([codec, 0]);
@@ -76,6 +77,7 @@ impl Section {
         to.extend(xxh3_128(stored).to_le_bytes());
         to.extend(stored);
         to.resize(to.len().next_multiple_of(8), 0);
+        to
     }
 }
 
@@ -108,13 +110,28 @@ impl Entry {
         end.checked_next_multiple_of(8)
     }
 
-    /// The section itself.
-    pub(crate) fn unpack(&self, file: &[u8]) -> Result<Section, TraceError> {
-        let start = self.offset as usize + HEADER;
-        let stored = &file[start..start + self.stored as usize];
+    /// Whether the stored bytes are those that were written.
+    pub(crate) fn check(&self, file: &[u8]) -> Result<(), TraceError> {
+        let stored = self.stored_bytes(file);
         if xxh3_128(stored) != self.hash {
             return Err(self.wrong("its bytes do not have the hash that was written with them"));
         }
+        let end = self.offset as usize + HEADER + stored.len();
+        let padding = &file[end..end.next_multiple_of(8)];
+        match padding.iter().all(|b| *b == 0) {
+            true => Ok(()),
+            false => Err(self.wrong("the zeros behind it are not zeros")),
+        }
+    }
+
+    fn stored_bytes<'a>(&self, file: &'a [u8]) -> &'a [u8] {
+        let start = self.offset as usize + HEADER;
+        &file[start..start + self.stored as usize]
+    }
+
+    /// The section itself, of a file that was checked.
+    pub(crate) fn unpack(&self, file: &[u8]) -> Result<Section, TraceError> {
+        let stored = self.stored_bytes(file);
         let data = match self.codec {
             0 if self.raw == self.stored => stored.to_vec(),
             1 => self.inflate(stored)?,

@@ -1,0 +1,315 @@
+//! Recording: a frame is drawn twice, once as it is, for hashes and counters, and once
+//! without skipping, observed, for its traffic.
+
+use gnomon_raster::{
+    AccessBatch, AccessObserver, Gpu, GpuConfig, PassReport, Recording, SubmitReport, Wants,
+};
+
+use crate::error::TraceError;
+use crate::format::blob::Blobs;
+use crate::format::encode::{Encoded, bytes_of, encode};
+use crate::format::events::{EventWriter, TexelWriter};
+use crate::format::section::{Codec, Section};
+use crate::format::{counters, file, v1};
+use crate::hashes::{DrawHashes, Hashing};
+use crate::meta::Meta;
+use crate::run;
+use crate::trace::{BLOB, COUN, FRAM, HASH, META, SHAD, TEXL, TRAF, Trace};
+use crate::witness::Witness;
+
+/// How to record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordOptions {
+    /// How to draw; none of it changes a byte of the trace. Both runs set their own
+    /// [`GpuConfig::skip`].
+    pub gpu: GpuConfig,
+    /// Record block accesses: without them a trace is small, and replays, but says nothing
+    /// of traffic.
+    pub traffic: bool,
+}
+
+impl Default for RecordOptions {
+    fn default() -> Self {
+        Self {
+            gpu: GpuConfig::default(),
+            traffic: true,
+        }
+    }
+}
+
+/// Records one frame.
+///
+/// ```
+/// use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
+/// use gnomon_raster::{
+///     ColorAttachment, Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, StoreOp,
+///     Subresource, TextureDescriptor, VertexBuffer,
+/// };
+/// use gnomon_shaders::surface::Constant;
+/// use gnomon_shaders::transform::{ClipFromWorld, HomogeneousPoints};
+/// use gnomon_traces::{Meta, RecordOptions, ReplayDepth, Trace, record, replay};
+/// use std::sync::Arc;
+///
+/// // A frame of one's own: a triangle of one colour.
+/// let mut frame = Recording::default();
+/// let image = frame.create(&TextureDescriptor::d2("image", Format::Rgba8Unorm, 16, 16))?;
+/// frame.name_output("color", image)?;
+/// let identity = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
+/// let pipeline = Arc::new(RenderPipeline {
+///     label: "orange".into(),
+///     vertex: HomogeneousPoints(ClipFromWorld(identity)).stage(),
+///     fragment: Some(Constant([1.0, 0.5, 0.0, 1.0]).stage()),
+///     primitive: PrimitiveState::default(),
+///     depth_stencil: DepthStencilState::default(),
+///     color_targets: vec![ColorTargetState::OPAQUE],
+/// });
+/// let corners = [[-1.0, -1.0, 0.5, 1.0], [1.0, -1.0, 0.5, 1.0], [0.0, 1.0, 0.5, 1.0]];
+/// let vertices = VertexBuffer { data: corners.concat(), stride: 4 };
+/// let draw = Draw {
+///     vertices: Some(Arc::new(vertices)),
+///     ..Draw::vertices_only("triangle", &pipeline, 3)
+/// };
+/// frame.list.passes.push(RenderPass {
+///     label: "main".into(),
+///     color: vec![ColorAttachment {
+///         texture: image,
+///         subresource: Subresource::default(),
+///         load: LoadOp::Clear([0.0; 4]),
+///         store: StoreOp::Store,
+///     }],
+///     depth_stencil: None,
+///     draws: vec![draw],
+/// });
+///
+/// // Recorded, read again, and replayed with the shaders of a table.
+/// let trace = record(Meta::new("orange"), &frame, RecordOptions::default())?;
+/// let again = Trace::read(trace.to_bytes().to_vec())?;
+/// let table = gnomon_shaders::table();
+/// let replayed = replay(&again, 0, &table, Default::default(), ReplayDepth::Draws)?;
+/// assert!(replayed.difference.is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// A stage has no identity, or the GPU refuses the frame.
+pub fn record(
+    meta: Meta,
+    recording: &Recording,
+    options: RecordOptions,
+) -> Result<Trace, TraceError> {
+    let mut recorder = Recorder::new(meta, options);
+    recorder.add(recording)?;
+    recorder.finish()
+}
+
+/// Records frame after frame.
+pub struct Recorder {
+    meta: Meta,
+    options: RecordOptions,
+    blobs: Blobs,
+    packed: Vec<Vec<u8>>,
+    frames: u32,
+}
+
+impl Recorder {
+    /// For a trace that says `meta` of itself; producer, number of frames and traffic are
+    /// filled in.
+    #[must_use]
+    pub fn new(meta: Meta, options: RecordOptions) -> Self {
+        Self {
+            meta,
+            options,
+            blobs: Blobs::default(),
+            packed: Vec::new(),
+            frames: 0,
+        }
+    }
+
+    /// Records the next frame.
+    ///
+    /// # Errors
+    /// A stage has no identity, or the GPU refuses the frame.
+    pub fn add(&mut self, recording: &Recording) -> Result<(), TraceError> {
+        let Encoded { frame, shaders } = encode(recording, &mut self.blobs)?;
+        let mut hashes = v1::Hashes::default();
+        let skipping = self.draw(recording, &mut hashes)?;
+        let mut counts = v1::Counts {
+            skipping: skipping.passes.iter().map(pass_counts).collect(),
+            unskipped: Vec::new(),
+        };
+        let mut traffic = None;
+        if self.options.traffic {
+            let (report, draws, observed) = self.observe(recording)?;
+            counts.unskipped = report.passes.iter().map(pass_counts).collect();
+            hashes.draws = draws.lists();
+            traffic = Some(observed);
+        }
+        self.section(SHAD, 0, bytes_of(&shaders));
+        self.section(FRAM, 0, bytes_of(&frame));
+        self.section(HASH, 0, bytes_of(&hashes));
+        self.section(COUN, 0, bytes_of(&counts));
+        for (number, pass) in traffic.into_iter().flatten().enumerate() {
+            self.section(TRAF, number, pass.events);
+            self.section(TEXL, number, pass.texels);
+        }
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// The trace.
+    ///
+    /// # Errors
+    /// None at present.
+    pub fn finish(self) -> Result<Trace, TraceError> {
+        let meta = Meta {
+            producer: match self.meta.producer.as_str() {
+                "" => format!("gnomon-traces {}", env!("CARGO_PKG_VERSION")),
+                given => given.to_owned(),
+            },
+            frames: self.frames,
+            traffic: self.options.traffic,
+            ..self.meta
+        };
+        let meta = serde_json::to_vec(&meta).expect("plain data in memory");
+        let head = [
+            pack(META, 0, 0, meta),
+            pack(BLOB, 0, 0, self.blobs.encode()),
+        ];
+        let sections = head.iter().chain(&self.packed);
+        Trace::read(file::assemble(sections.map(Vec::as_slice)))
+    }
+
+    fn section(&mut self, tag: [u8; 4], part: usize, data: Vec<u8>) {
+        self.packed.push(pack(tag, self.frames, part as u32, data));
+    }
+
+    fn gpu(&self, skip: bool) -> Result<Gpu, gnomon_raster::Error> {
+        Gpu::new(GpuConfig {
+            skip,
+            ..self.options.gpu
+        })
+    }
+
+    /// The frame as it is.
+    fn draw(
+        &self,
+        recording: &Recording,
+        hashes: &mut v1::Hashes,
+    ) -> Result<SubmitReport, TraceError> {
+        let mut run = || {
+            run::draw_passes(&mut self.gpu(true)?, recording, |gpu, _, pass| {
+                hashes.ends.push(run::end_hashes(gpu, pass)?);
+                Ok(())
+            })
+        };
+        run().map_err(|source| self.refused(source))
+    }
+
+    /// The frame without skipping, and its traffic.
+    fn observe(
+        &self,
+        recording: &Recording,
+    ) -> Result<(SubmitReport, DrawHashes, Vec<PassTraffic>), TraceError> {
+        let mut traffic = TrafficWriter::new(recording);
+        let wants = Wants {
+            depth_ranges: true,
+            texels: true,
+            witness: Some(&Witness),
+            ..Wants::default()
+        };
+        let mut run = || {
+            let mut gpu = self.gpu(false)?;
+            gpu.load(recording)?;
+            gpu.submit_observed(&recording.list, wants, &mut traffic)
+        };
+        let report = run().map_err(|source| self.refused(source))?;
+        Ok((report, traffic.hashes.done(), traffic.passes))
+    }
+
+    fn refused(&self, source: gnomon_raster::Error) -> TraceError {
+        TraceError::Gpu {
+            frame: self.frames as usize,
+            source,
+        }
+    }
+}
+
+fn pack(tag: [u8; 4], frame: u32, part: u32, data: Vec<u8>) -> Vec<u8> {
+    let section = Section {
+        tag,
+        version: v1::VERSION,
+        frame,
+        part,
+        data,
+    };
+    section.pack(Codec::Zstd)
+}
+
+fn pass_counts(pass: &PassReport) -> v1::PassCounts {
+    let draws = pass.draws.iter();
+    v1::PassCounts {
+        clear: counters::clear_list(&pass.clear),
+        draws: draws.map(|d| counters::list(&d.counters)).collect(),
+    }
+}
+
+/// What was heard of a pass.
+struct PassTraffic {
+    events: Vec<u8>,
+    texels: Vec<u8>,
+}
+
+/// Writes down what it hears.
+struct TrafficWriter {
+    hashes: Hashing,
+    passes: Vec<PassTraffic>,
+    /// Of the pass that is under way.
+    open: Open,
+}
+
+struct Open {
+    events: EventWriter,
+    texels: TexelWriter,
+    heard: u64,
+}
+
+impl Default for Open {
+    fn default() -> Self {
+        Self {
+            events: EventWriter::new(),
+            texels: TexelWriter::new(),
+            heard: 0,
+        }
+    }
+}
+
+impl TrafficWriter {
+    fn new(recording: &Recording) -> Self {
+        let passes = recording.list.passes.iter();
+        Self {
+            hashes: Hashing::new(passes.map(|p| p.draws.len())),
+            passes: Vec::new(),
+            open: Open::default(),
+        }
+    }
+}
+
+impl AccessObserver for TrafficWriter {
+    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
+        self.hashes.batch(pass, batch);
+        let open = &mut self.open;
+        batch.blocks.iter().for_each(|b| open.events.push(b));
+        for texel in batch.texels {
+            open.texels.push(open.heard + u64::from(texel.event), texel);
+        }
+        open.heard += batch.blocks.len() as u64;
+    }
+
+    fn end(&mut self, _: usize, _: &PassReport) {
+        let open = core::mem::take(&mut self.open);
+        self.passes.push(PassTraffic {
+            events: open.events.finish(),
+            texels: open.texels.finish(),
+        });
+    }
+}

@@ -1,0 +1,65 @@
+//! Drawing a frame pass by pass, so that what each pass leaves can be looked at.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use gnomon_raster::{
+    CommandList, Error, Gpu, Recording, RenderPass, SubmitReport, Subresource, TextureId,
+};
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::error::TraceError;
+
+/// Loads `recording` and draws its passes; `after` is called behind each.
+pub(crate) fn draw_passes(
+    gpu: &mut Gpu,
+    recording: &Recording,
+    mut after: impl FnMut(&Gpu, usize, &RenderPass) -> Result<(), Error>,
+) -> Result<SubmitReport, Error> {
+    gpu.load(recording)?;
+    let mut report = SubmitReport::default();
+    for (number, pass) in recording.list.passes.iter().enumerate() {
+        let list = CommandList {
+            passes: vec![pass.clone()],
+        };
+        report.passes.extend(gpu.submit(&list)?.passes);
+        after(gpu, number, pass)?;
+    }
+    Ok(report)
+}
+
+/// The images of a pass's attachments: colours, then depth and stencil.
+pub(crate) fn attachments(pass: &RenderPass) -> Vec<(TextureId, Subresource)> {
+    let color = pass.color.iter().map(|a| (a.texture, a.subresource));
+    let depth = pass.depth_stencil.iter();
+    color
+        .chain(depth.map(|a| (a.texture, a.subresource)))
+        .collect()
+}
+
+/// Hashes of what the attachments of a pass hold.
+pub(crate) fn end_hashes(gpu: &Gpu, pass: &RenderPass) -> Result<Vec<u128>, Error> {
+    let hash = |(texture, image): (TextureId, Subresource)| {
+        Ok(xxh3_128(&gpu.texture(texture)?.read_packed(image)?))
+    };
+    attachments(pass).into_iter().map(hash).collect()
+}
+
+/// What `run` gives; where a shader panics, whose uniforms may be anything in a file, that
+/// is an error of `frame`.
+pub(crate) fn guarded<T>(
+    frame: usize,
+    run: impl FnOnce() -> Result<T, Error>,
+) -> Result<T, TraceError> {
+    match catch_unwind(AssertUnwindSafe(run)) {
+        Ok(Ok(value)) => Ok(value),
+        Ok(Err(source)) => Err(TraceError::Gpu { frame, source }),
+        Err(panic) => {
+            let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
+            let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+            Err(TraceError::Stopped {
+                frame,
+                message: text.unwrap_or_else(|| "no message".to_owned()),
+            })
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! Small frames of one pass, drawn and judged.
 
+#![allow(dead_code, reason = "each test takes what it needs")]
+
 use std::sync::Arc;
 
 use gnomon_raster::shader::{
@@ -32,6 +34,8 @@ pub(crate) struct Case {
     pub(crate) format: Format,
     pub(crate) clear: [f32; 4],
     pub(crate) depth: Option<CompareFunction>,
+    /// States of draws, where they are not all the same.
+    pub(crate) states: Vec<DepthStencilState>,
     /// Depths of draws, each of all vertices.
     pub(crate) layers: Vec<f32>,
     pub(crate) vertices: Vec<Vertex>,
@@ -47,6 +51,7 @@ impl Case {
             format: Format::Rgba8Unorm,
             clear: [0.0; 4],
             depth: Some(CompareFunction::LessEqual),
+            states: Vec::new(),
             layers: vec![0.0],
             vertices: Vec::new(),
             textured: false,
@@ -68,8 +73,12 @@ impl Case {
             .map(|i| [noise(i), noise(i + 7), noise(i * 3), 1.0])
             .collect();
         r.write(image, Subresource::default(), &texels).unwrap();
-        let pipeline = Arc::new(self.pipeline());
-        let draws = self.layers.iter().map(|z| {
+        let draws = self.layers.iter().enumerate().map(|(i, z)| {
+            let mut pipeline = self.pipeline();
+            if let Some(state) = self.states.get(i) {
+                pipeline.depth_stencil = *state;
+            }
+            let pipeline = Arc::new(pipeline);
             let mut draw = Draw::vertices_only("layer", &pipeline, self.vertices.len() as u32);
             draw.vertices = Some(Arc::new(self.buffer(*z)));
             if self.textured {

@@ -1,0 +1,61 @@
+//! The command line of `gnomon traffic`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+/// Flags of `traffic`.
+#[derive(Debug, Args)]
+#[command(after_help = "Logical bytes are what the commands ask for after the profile's HiZ, \
+cache bytes go between units and caches, dram bytes between caches and memory. dram and \
+cache are modelled. `gnomon profiles` lists the profiles.")]
+pub(crate) struct TrafficArgs {
+    /// The trace
+    #[arg(value_name = "FILE.gnt")]
+    pub(crate) trace: PathBuf,
+    /// Profiles by name, or paths of your own (.toml)
+    #[arg(long, value_name = "P[,Q...]", value_delimiter = ',', required = true)]
+    pub(crate) profile: Vec<String>,
+    /// What a row is
+    #[arg(long, value_enum, default_value_t = By::Pass)]
+    pub(crate) by: By,
+    /// The frame, from 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) frame: usize,
+    /// Judge tilers also as if passes that go on in the same attachments were one
+    #[arg(long)]
+    pub(crate) per_pass_merged: bool,
+    /// Write rows (.csv), or dram bytes of tiles or pixels of one profile (.npy)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON document on stdout
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What traffic is added up by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum By {
+    /// Render passes
+    Pass,
+    /// Draws, and what passes do outside of them
+    Draw,
+    /// Clients of the memory
+    Client,
+    /// Blocks of 8x8 pixels of the picture
+    Tile,
+    /// Pixels of the picture
+    Pixel,
+}
+
+impl By {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Draw => "draw",
+            Self::Client => "client",
+            Self::Tile => "tile",
+            Self::Pixel => "pixel",
+        }
+    }
+}

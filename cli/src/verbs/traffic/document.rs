@@ -1,0 +1,149 @@
+//! Traffic as rows, for JSON, CSV and tables.
+
+use gnomon_traces::profile::{Client, Levels, Traffic, TrafficRow};
+use serde::Serialize;
+
+use super::args::By;
+
+#[derive(Serialize)]
+pub(crate) struct TrafficDocument {
+    pub(crate) trace: String,
+    pub(crate) profile: String,
+    pub(crate) by: &'static str,
+    /// Textures have cache and dram bytes; otherwise look-ups were not recorded.
+    pub(crate) texels_recorded: bool,
+    pub(crate) rows: Vec<RowDocument>,
+    pub(crate) totals: Levels,
+}
+
+#[derive(Serialize)]
+pub(crate) struct RowDocument {
+    pub(crate) key: String,
+    pub(crate) client: String,
+    #[serde(flatten)]
+    pub(crate) levels: Levels,
+    pub(crate) hiz: HizDocument,
+}
+
+#[derive(Clone, Default, Serialize)]
+pub(crate) struct HizDocument {
+    pub(crate) disabled_reason: Option<String>,
+}
+
+impl TrafficDocument {
+    pub(crate) fn new(trace: &str, traffic: &Traffic, by: By) -> Self {
+        Self {
+            trace: trace.to_owned(),
+            profile: traffic.profile.clone(),
+            by: by.name(),
+            texels_recorded: traffic.texels_recorded,
+            rows: rows(traffic, by),
+            totals: traffic.total(),
+        }
+    }
+}
+
+fn rows(traffic: &Traffic, by: By) -> Vec<RowDocument> {
+    match by {
+        By::Draw => traffic.rows.iter().flat_map(draw_rows).collect(),
+        By::Pass => pass_rows(traffic),
+        By::Client => client_rows(traffic),
+        By::Tile => tile_rows(traffic),
+        By::Pixel => pixel_rows(traffic),
+    }
+}
+
+fn row(key: &str, client: &str, levels: Levels) -> Option<RowDocument> {
+    (levels != Levels::default()).then(|| RowDocument {
+        key: key.to_owned(),
+        client: client.to_owned(),
+        levels,
+        hiz: HizDocument::default(),
+    })
+}
+
+fn key(row: &TrafficRow) -> String {
+    match (row.pass, row.draw) {
+        (Some(pass), Some(draw)) => format!("{pass}/{draw} {}", row.label),
+        (Some(pass), None) => format!("{pass} {}", row.label),
+        _ => row.label.clone(),
+    }
+}
+
+fn draw_rows(of: &TrafficRow) -> Vec<RowDocument> {
+    let key = key(of);
+    let clients = Client::all();
+    let rows = clients.filter_map(|c| row(&key, &c.to_string(), of.client(c)));
+    let mut rows: Vec<RowDocument> = rows.collect();
+    for row in &mut rows {
+        row.hiz.disabled_reason = of.disabled.map(|r| r.to_string());
+    }
+    rows
+}
+
+fn pass_rows(traffic: &Traffic) -> Vec<RowDocument> {
+    let passes = traffic.rows.chunk_by(|a, b| a.pass == b.pass);
+    passes.flat_map(pass_row).collect()
+}
+
+fn pass_row(rows: &[TrafficRow]) -> Vec<RowDocument> {
+    let key = rows.last().map(key).unwrap_or_default();
+    let sum = |client| {
+        let mut sum = Levels::default();
+        rows.iter().for_each(|r| sum.add(&r.client(client)));
+        sum
+    };
+    let mut all: Vec<RowDocument> = Client::all()
+        .filter_map(|c| row(&key, &c.to_string(), sum(c)))
+        .collect();
+    let hiz = HizDocument {
+        disabled_reason: reasons(rows),
+    };
+    all.iter_mut().for_each(|r| r.hiz = hiz.clone());
+    all
+}
+
+/// Each reason once, with how many draws it concerns.
+pub(crate) fn reasons(rows: &[TrafficRow]) -> Option<String> {
+    let draws = rows.iter().filter(|r| r.draw.is_some()).count();
+    let mut found: Vec<_> = rows.iter().filter_map(|r| r.disabled).collect();
+    found.sort_unstable();
+    let each = found.chunk_by(|a, b| a == b);
+    let each = each.map(|same| format!("{}: {} of {draws} draws", same[0], same.len()));
+    let text = each.collect::<Vec<_>>().join("; ");
+    (!text.is_empty()).then_some(text)
+}
+
+fn client_rows(traffic: &Traffic) -> Vec<RowDocument> {
+    let clients = Client::all();
+    let rows = clients.filter_map(|c| row("frame", &c.to_string(), traffic.client(c)));
+    rows.collect()
+}
+
+/// What has no place in the picture comes last.
+fn tile_rows(traffic: &Traffic) -> Vec<RowDocument> {
+    let [columns, down] = traffic.grid;
+    let mut rows = Vec::new();
+    for cell in 0..=(columns * down) as usize {
+        let key = match cell < (columns * down) as usize {
+            true => format!("{},{}", cell as u32 % columns, cell as u32 / columns),
+            false => "elsewhere".to_owned(),
+        };
+        let levels = |c| traffic.cells(c).get(cell).copied().unwrap_or_default();
+        rows.extend(Client::all().filter_map(|c| row(&key, &c.to_string(), levels(c))));
+    }
+    rows
+}
+
+fn pixel_rows(traffic: &Traffic) -> Vec<RowDocument> {
+    let Some((pixels, elsewhere)) = traffic.pixels() else {
+        return Vec::new();
+    };
+    let width = traffic.size[0] as usize;
+    let at = |(i, levels): (usize, Levels)| {
+        row(&format!("{},{}", i % width, i / width), "all", levels)
+    };
+    let mut rows: Vec<RowDocument> = pixels.into_iter().enumerate().filter_map(at).collect();
+    rows.extend(row("elsewhere", "all", elsewhere));
+    rows
+}

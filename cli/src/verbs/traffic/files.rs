@@ -1,0 +1,88 @@
+//! Traffic as CSV and as arrays.
+
+use std::path::Path;
+
+use gnomon_traces::profile::{Client, Levels, Traffic};
+
+use super::args::By;
+use super::document::TrafficDocument;
+use crate::error::CliError;
+use crate::output::{files, npy};
+
+/// A file that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Csv,
+    Npy,
+}
+
+/// Which file `path` is to be.
+pub(super) fn kind(path: &Path, by: By, profiles: usize) -> Result<Kind, CliError> {
+    files::check_target(path)?;
+    let wrong = |valid: &str| {
+        Err(CliError::Flag {
+            flag: "--out",
+            value: path.display().to_string(),
+            valid: valid.to_owned(),
+        })
+    };
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("csv") => Ok(Kind::Csv),
+        Some("npy") if !matches!(by, By::Tile | By::Pixel) => {
+            wrong("an array needs --by tile or --by pixel; .csv takes all")
+        }
+        Some("npy") if profiles != 1 => wrong("an array is of one profile; .csv takes several"),
+        Some("npy") => Ok(Kind::Npy),
+        _ => wrong("expected a file name that ends in .csv or .npy"),
+    }
+}
+
+pub(super) fn csv(documents: &[TrafficDocument]) -> String {
+    let mut text = "profile,key,client,logical_read_bytes,logical_write_bytes,cache_read_bytes,\
+        cache_write_bytes,dram_read_bytes,dram_write_bytes,hiz_disabled_reason\n"
+        .to_owned();
+    for d in documents {
+        for row in &d.rows {
+            let l = &row.levels;
+            let amounts = [l.logical, l.cache, l.dram];
+            let numbers = amounts.map(|a| format!("{},{}", a.read_bytes, a.write_bytes));
+            let reason = row.hiz.disabled_reason.as_deref().unwrap_or_default();
+            let cells = [
+                quoted(&d.profile),
+                quoted(&row.key),
+                row.client.clone(),
+                numbers.join(","),
+                quoted(reason),
+            ];
+            text += &cells.join(",");
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// A cell, in quotation marks where it needs them.
+fn quoted(cell: &str) -> String {
+    match cell.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", cell.replace('"', "\"\"")),
+        false => cell.to_owned(),
+    }
+}
+
+/// dram bytes in both directions of all clients.
+pub(super) fn array(traffic: &Traffic, by: By) -> Vec<u8> {
+    let bytes = |l: &Levels| l.dram.bytes() as f32;
+    if by == By::Pixel {
+        let pixels = traffic.pixels().map(|(pixels, _)| pixels).unwrap_or_default();
+        let values: Vec<f32> = pixels.iter().map(bytes).collect();
+        return npy::encode(traffic.size, &values);
+    }
+    let tiles = (traffic.grid[0] * traffic.grid[1]) as usize;
+    let mut sums = vec![Levels::default(); tiles];
+    for client in Client::all() {
+        let cells = traffic.cells(client).iter();
+        sums.iter_mut().zip(cells).for_each(|(sum, l)| sum.add(l));
+    }
+    let values: Vec<f32> = sums.iter().map(bytes).collect();
+    npy::encode(traffic.grid, &values)
+}

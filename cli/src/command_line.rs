@@ -11,13 +11,13 @@ use crate::verbs::compare::CompareArgs;
 use crate::verbs::debug::DebugArgs;
 use crate::verbs::demo::DemoArgs;
 use crate::verbs::diff::DiffArgs;
-use crate::verbs::pixel::PixelArgs;
-use crate::verbs::render::RenderArgs;
-use crate::verbs::report::ReportArgs;
 use crate::verbs::dump::DumpArgs;
 use crate::verbs::info::InfoArgs;
+use crate::verbs::pixel::PixelArgs;
 use crate::verbs::record::RecordArgs;
+use crate::verbs::render::RenderArgs;
 use crate::verbs::replay::ReplayArgs;
+use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.

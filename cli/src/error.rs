@@ -41,6 +41,7 @@ pub(crate) enum CliError {
     #[error(transparent)]
     History(#[from] HistoryError),
     /// A trace cannot be had, written or replayed.
+    #[error(transparent)]
     Trace(#[from] TraceError),
     /// A replay is not what was recorded.
     #[error("{0}")]

@@ -9,6 +9,7 @@ use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
 use gnomon_traces::TraceError;
+use gnomon_traces::history::HistoryError;
 use thiserror::Error;
 
 /// Why a verb did not finish.
@@ -35,12 +36,12 @@ pub(crate) enum CliError {
     /// A claim cannot be measured.
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
-    /// A trace cannot be had, written or replayed.
-    #[error(transparent)]
-    Trace(#[from] TraceError),
     /// A replay is not what was recorded.
     #[error("{0}")]
     ReplayDiffers(String),
+    /// A pixel has no history.
+    #[error(transparent)]
+    History(#[from] HistoryError),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {
@@ -90,6 +91,26 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
+    /// A trace cannot be read or replayed.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// Something of a trace cannot be had.
+    #[error("{}: {source}", .path.display())]
+    InTrace {
+        /// The file.
+        path: PathBuf,
+        /// What.
+        source: TraceError,
+    },
+    /// No cause of a difference is found.
+    #[error(transparent)]
+    Bisect(#[from] gnomon_traces::BisectError),
+    /// The GPU refuses a frame.
+    #[error(transparent)]
+    Gpu(#[from] gnomon_raster::Error),
+    /// What was compared is different, which has been said.
+    #[error("different")]
+    Differs,
     /// A check of our own failed: a fault of the program or the machine.
     #[error("check failed: {0}")]
     Check(String),
@@ -99,7 +120,10 @@ impl CliError {
     /// 1 for a failed check, 2 for bad input.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Check(_) | Self::ReplayDiffers(_) => 1,
+            Self::Check(_)
+            | Self::Differs
+            | Self::ReplayDiffers(_)
+            | Self::History(HistoryError::Broken { .. }) => 1,
             _ => 2,
         }
     }

@@ -3,16 +3,20 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+pub mod chrome;
 mod difference;
 mod error;
+pub mod findings;
 mod format;
 mod hashes;
 pub mod history;
+pub mod maps;
 mod meta;
 mod prefix;
 pub mod profile;
 mod record;
 mod replay;
+pub mod report;
 mod run;
 mod shape;
 mod stream;

@@ -10,7 +10,7 @@ use crate::texture::BLOCK;
 const TEXELS: u32 = BLOCK * BLOCK;
 
 /// Texels that fragments read and that are counted, and before them those of earlier
-/// events, folded.
+/// events, folded; those of an event in no order that others could rely on.
 #[derive(Default)]
 pub(crate) struct TexelLog {
     /// Of earlier events.
@@ -75,7 +75,6 @@ impl TexelLog {
             return;
         }
         self.reads.sort_unstable();
-        let first = self.folded.len();
         for same in self.reads.chunk_by(Read::is_beside) {
             let mut all = same[0];
             same[1..].iter().for_each(|r| all.join(r));
@@ -91,9 +90,6 @@ impl TexelLog {
                 taps: all.taps,
             });
         }
-        // Blocks are stored in another order than row by row.
-        let place = |t: &TexelAccess| (t.slot, t.mip, t.layer, t.block[1], t.block[0]);
-        self.folded[first..].sort_unstable_by_key(place);
         self.reads.clear();
     }
 }

@@ -3,7 +3,7 @@
 
 /// An item of one list, of the other, or of both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pair {
+pub(super) enum Pair {
     /// In both, at these places.
     Both(usize, usize),
     /// In the first only.

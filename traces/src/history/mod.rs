@@ -9,6 +9,8 @@ mod attachments;
 mod collect;
 mod debug;
 mod event;
+#[cfg(test)]
+mod tests;
 
 pub use attachments::{Attachment, Value};
 pub use debug::{Debug, DebugStage, DebugVertex};

@@ -1,7 +1,8 @@
 //! The page that `report` writes. What a browser makes of it: `tests/report/check.mjs`.
 
 use gnomon_pipeline::technique::Params;
-use gnomon_traces::{Meta, RecordOptions, record};
+use gnomon_traces::profile::{Judge, profile};
+use gnomon_traces::{Meta, RecordOptions, Trace, record};
 use serde_json::Value;
 
 use crate::common::Folder;
@@ -208,6 +209,33 @@ fn profiles_judge_the_frame() {
     folder
         .gnomon(&format!("{SHOT} --out b.html --profile imr-1999"))
         .refused(&["imr-1999", "imr-2008"]);
+}
+
+/// Bytes under a profile are those that its judge finds in the recorded frame.
+#[test]
+fn bytes_of_profiles_are_the_judges() {
+    let folder = Folder::new("report-judge");
+    let page = page(&folder, "--profile imr-2008,tbr-adreno");
+    record_demo(&folder.path("a.gnt"));
+    let trace = Trace::open(folder.path("a.gnt")).unwrap();
+    for name in ["imr-2008", "tbr-adreno"] {
+        let shape = trace.shape(0).unwrap();
+        let mut judge = Judge::new(&profile(name).unwrap(), &shape).unwrap();
+        trace.events(0, &mut judge).unwrap();
+        let traffic = judge.finish();
+        let bytes = traffic.total().dram.bytes();
+        assert_has(
+            &page,
+            &[&format!("Under {name}, memory moves {bytes} bytes")],
+        );
+        for row in traffic.rows.iter().filter(|r| r.draw.is_some()) {
+            let why = row
+                .disabled
+                .map_or("used".to_owned(), |d| format!("off: {d}"));
+            let cells = format!("<td>{why}</td><td>{}</td>", row.total().dram.bytes());
+            assert_has(&page, &[&cells]);
+        }
+    }
 }
 
 /// Hardware that cannot do what the frame does says so on the page.

@@ -133,10 +133,8 @@ fn the_timeline_adds_up() {
     let total = |t: &Value| t["read_bytes"].as_u64().unwrap() + t["write_bytes"].as_u64().unwrap();
     assert_eq!(traffic.values().map(total).sum::<u64>(), bytes);
     for (client, moved) in traffic {
-        let last = of("C")
-            .filter(|e| e["name"] == client.as_str())
-            .last()
-            .unwrap();
+        let of_client: Vec<_> = of("C").filter(|e| e["name"] == client.as_str()).collect();
+        let last = of_client.last().unwrap();
         assert_eq!(last["args"]["bytes"], total(moved), "{client}");
     }
     folder

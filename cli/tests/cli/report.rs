@@ -1,5 +1,8 @@
 //! The page that `report` writes. What a browser makes of it: `tests/report/check.mjs`.
 
+use gnomon_pipeline::technique::Params;
+use gnomon_traces::profile::{Judge, profile};
+use gnomon_traces::{Meta, RecordOptions, Trace, record};
 use serde_json::Value;
 
 use crate::common::Folder;
@@ -130,10 +133,8 @@ fn the_timeline_adds_up() {
     let total = |t: &Value| t["read_bytes"].as_u64().unwrap() + t["write_bytes"].as_u64().unwrap();
     assert_eq!(traffic.values().map(total).sum::<u64>(), bytes);
     for (client, moved) in traffic {
-        let last = of("C")
-            .filter(|e| e["name"] == client.as_str())
-            .last()
-            .unwrap();
+        let of_client: Vec<_> = of("C").filter(|e| e["name"] == client.as_str()).collect();
+        let last = of_client.last().unwrap();
         assert_eq!(last["args"]["bytes"], total(moved), "{client}");
     }
     folder
@@ -208,10 +209,80 @@ fn profiles_judge_the_frame() {
         .refused(&["imr-1999", "imr-2008"]);
 }
 
+/// Bytes under a profile are those that its judge finds in the recorded frame.
+#[test]
+fn bytes_of_profiles_are_the_judges() {
+    let folder = Folder::new("report-judge");
+    let page = page(&folder, "--profile imr-2008,tbr-adreno");
+    record_demo(&folder.path("a.gnt"));
+    let trace = Trace::open(folder.path("a.gnt")).unwrap();
+    for name in ["imr-2008", "tbr-adreno"] {
+        let shape = trace.shape(0).unwrap();
+        let mut judge = Judge::new(&profile(name).unwrap(), &shape).unwrap();
+        trace.events(0, &mut judge).unwrap();
+        let traffic = judge.finish();
+        let bytes = traffic.total().dram.bytes();
+        assert_has(
+            &page,
+            &[&format!("Under {name}, memory moves {bytes} bytes")],
+        );
+        for row in traffic.rows.iter().filter(|r| r.draw.is_some()) {
+            let why = row
+                .disabled
+                .map_or("used".to_owned(), |d| format!("off: {d}"));
+            let cells = format!("<td>{why}</td><td>{}</td>", row.total().dram.bytes());
+            assert_has(&page, &[&cells]);
+        }
+    }
+}
+
 /// Hardware that cannot do what the frame does says so on the page.
 #[test]
 fn a_profile_that_cannot_is_told() {
     let folder = Folder::new("report-refused");
     let page = page(&folder, "--profile imr-2003,imr-2008");
     assert_has(&page, &["Not judged: profile `imr-2003`", "Under imr-2008"]);
+}
+
+/// The frame of [`SHOT`] in a file.
+fn record_demo(to: &std::path::Path) {
+    let scene = gnomon_pipeline::world::scene::builtin::build("demo").unwrap();
+    let technique = gnomon_pipeline::techniques::find("shadow-volumes").unwrap();
+    let params = Params::parse(technique, std::iter::empty::<String>()).unwrap();
+    let frame = technique.frame(&scene, [64, 48], &params).unwrap();
+    let trace = record(
+        Meta::new("demo"),
+        &frame.recording,
+        RecordOptions::default(),
+    );
+    trace.unwrap().write(to).unwrap();
+}
+
+/// A recorded frame has the page of its scene: the same picture, draws and history.
+#[test]
+fn a_trace_has_the_page_of_its_scene() {
+    let folder = Folder::new("report-trace");
+    record_demo(&folder.path("a.gnt"));
+    let of_scene = page(&folder, "--pixel 30,20");
+    folder
+        .gnomon("report a.gnt --out a.html --pixel 30,20")
+        .fine();
+    let of_trace = std::fs::read_to_string(folder.path("a.html")).unwrap();
+    for part in ["<div class=\"history\"", "<tbody>"] {
+        let rest = |page: &str| page[page.find(part).unwrap()..].to_owned();
+        let end = |page: &str| page.find("<footer>").unwrap();
+        let (a, b) = (rest(&of_scene), rest(&of_trace));
+        assert_eq!(a[..end(&a)], b[..end(&b)], "{part}");
+    }
+    let hash = |page: &str| {
+        let at = page.find("<dt>Picture").unwrap();
+        page[at..].split("<dd>").nth(1).unwrap()[..64].to_owned()
+    };
+    assert_eq!(hash(&of_scene), hash(&of_trace));
+    folder
+        .gnomon("report a.gnt --out b.html --technique pcf")
+        .refused(&["--technique", "leave it out"]);
+    folder
+        .gnomon("report a.gnt --out b.html --frame 7")
+        .refused(&["frame 7"]);
 }

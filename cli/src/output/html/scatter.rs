@@ -52,16 +52,14 @@ impl Scatter {
             );
         }
         let base = HEIGHT - BOTTOM;
+        let (title, [across, high]) =
+            (escape(&self.title), self.axes.each_ref().map(|a| escape(a)));
+        let (tall, below, inside) = (HEIGHT + 10.0, base + 18.0, LEFT + 6.0);
         format!(
-            "<figure class=\"scatter\"><figcaption>{}</figcaption><svg viewBox=\"0 -10 {WIDTH} {}\" role=\"img\" aria-label=\"{0}\">\
+            "<figure class=\"scatter\"><figcaption>{title}</figcaption><svg viewBox=\"0 -10 {WIDTH} {tall}\" role=\"img\" aria-label=\"{title}\">\
              <path d=\"M{LEFT} 0V{base}H{WIDTH}\"/>{points}\
-             <text x=\"{WIDTH}\" y=\"{}\" text-anchor=\"end\">{} →</text><text x=\"{}\" y=\"4\">{} ↑</text></svg></figure>\n",
-            escape(&self.title),
-            HEIGHT + 10.0,
-            base + 18.0,
-            escape(&self.axes[0]),
-            LEFT + 6.0,
-            escape(&self.axes[1]),
+             <text x=\"{LEFT}\" y=\"{below}\">0</text><text x=\"{WIDTH}\" y=\"{below}\" text-anchor=\"end\">{across}, to {right:.4} →</text>\
+             <text x=\"{inside}\" y=\"4\">{high}, to {up:.4} ↑</text></svg></figure>\n"
         )
     }
 }

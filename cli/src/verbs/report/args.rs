@@ -11,7 +11,7 @@ use crate::verbs::compare::{EntryArg, parse_entry};
 #[derive(Debug, Args)]
 #[command(after_help = REPORT_HELP)]
 pub(crate) struct ReportArgs {
-    /// The scene.
+    /// The scene, or the .gnt file of a recorded frame.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
     /// Technique, with settings behind colons if need be: NAME:KEY=VALUE:...; may be
@@ -19,6 +19,9 @@ pub(crate) struct ReportArgs {
     /// shadow-volumes]
     #[arg(long = "technique", value_name = "NAME", value_parser = parse_entry)]
     pub(crate) techniques: Vec<EntryArg>,
+    /// Frame of a trace, the scene being a .gnt file
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) frame: usize,
     /// Image size in pixels [default: the scene file's, or else 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,

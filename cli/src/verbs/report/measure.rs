@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind, Score, shaded};
-use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
+use gnomon_pipeline::measure::render::{RenderError, RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::Scene;
+use gnomon_raster::{Recording, TextureId};
 use gnomon_traces::FrameShape;
 use gnomon_traces::findings::{Finding, findings, profile_findings};
 use gnomon_traces::history::{self, History, HistoryOptions};
@@ -16,14 +17,20 @@ use gnomon_traces::profile::{Profile, ProfileError, profile};
 use gnomon_traces::report::FrameReport;
 
 use super::args::ReportArgs;
+use crate::draw::Picture;
 use crate::error::CliError;
+use crate::overlay;
 use crate::verbs;
 use crate::verbs::compare::EntryArg;
 
-/// A technique's frame.
+/// A frame and what the page shows of it.
 pub(super) struct Subject {
     pub(super) label: String,
-    pub(super) done: Rendered,
+    pub(super) picture: Picture,
+    /// Of what the frame leaves behind, by name.
+    pub(super) hashes: Vec<(String, String)>,
+    pub(super) warnings: Vec<String>,
+    pub(super) frame_ms: f64,
     pub(super) maps: Maps,
     pub(super) frame: FrameReport,
     pub(super) judged: Vec<Judged>,
@@ -31,8 +38,22 @@ pub(super) struct Subject {
     pub(super) refused: Vec<ProfileError>,
     pub(super) findings: Vec<Finding>,
     pub(super) histories: Vec<History>,
+    /// What there is to compare with the truth: not of recorded frames.
+    done: Option<Rendered>,
     /// Against the exact soft shadow, where there are several techniques.
     pub(super) score: Option<Score>,
+}
+
+/// How frames are observed.
+pub(super) struct Observe<'a> {
+    pub(super) settings: &'a RenderSettings,
+    pub(super) profiles: &'a [Profile],
+    pub(super) pixels: &'a [[u32; 2]],
+}
+
+/// A frame that the GPU refuses.
+pub(super) fn refuse_gpu(error: gnomon_raster::Error) -> CliError {
+    CliError::Render(RenderError::Gpu(error))
 }
 
 /// A technique and its settings.
@@ -89,50 +110,83 @@ fn read_profile(name: &str) -> Result<Profile, CliError> {
 }
 
 impl Subject {
-    pub(super) fn new(
+    /// The frame of a technique.
+    pub(super) fn of_scene(
         entry: &Entry,
         scene: &Scene,
-        settings: &RenderSettings,
-        profiles: &[Profile],
-        pixels: &[[u32; 2]],
+        how: &Observe<'_>,
     ) -> Result<Self, CliError> {
+        let settings = how.settings;
         let done = render(scene, entry.technique, &entry.params, settings)?;
         let frame = entry.technique.frame(scene, settings.size, &entry.params)?;
-        let recording = &frame.recording;
-        let gpu = |e| CliError::Render(gnomon_pipeline::measure::render::RenderError::Gpu(e));
-        let (maps, report) = observe(recording, frame.outputs.color, settings.gpu).map_err(gpu)?;
-        let frame = FrameReport::new(&FrameShape::of(recording), &report, settings.gpu);
-        let (judged, refused): (Vec<_>, Vec<_>) = judge(recording, &frame, profiles, settings.gpu)
-            .map_err(gpu)?
-            .into_iter()
-            .partition(Result::is_ok);
-        let judged: Vec<Judged> = judged.into_iter().flatten().collect();
-        let refused = refused.into_iter().filter_map(Result::err).collect();
-        let of_profiles: Vec<Finding> = judged
-            .iter()
-            .flat_map(|j| profile_findings(&frame, j))
-            .collect();
+        let image = frame.outputs.color;
+        let observed = Self::observe(entry.label.clone(), &frame.recording, image, how)?;
+        let warnings = done.warnings.iter();
+        Ok(Self {
+            picture: overlay::picture(&done),
+            hashes: vec![
+                ("Picture".to_owned(), done.color_hash()),
+                ("Visibility".to_owned(), done.visibility_hash()),
+            ],
+            warnings: warnings
+                .map(|w| format!("Warning: {}: {}", w.code, w.message))
+                .collect(),
+            frame_ms: done.frame_ms,
+            done: Some(done),
+            ..observed
+        })
+    }
+
+    /// What is observed of a frame whose picture is `image`.
+    pub(super) fn observe(
+        label: String,
+        recording: &Recording,
+        image: TextureId,
+        how: &Observe<'_>,
+    ) -> Result<Self, CliError> {
+        let gpu = how.settings.gpu;
+        let (maps, report) = observe(recording, image, gpu).map_err(refuse_gpu)?;
+        let frame = FrameReport::new(&FrameShape::of(recording), &report, gpu);
+        let judged = judge(recording, &frame, how.profiles, gpu).map_err(refuse_gpu)?;
+        let (judged, refused) = apart(judged);
         let options = HistoryOptions {
-            config: settings.gpu,
+            config: gpu,
             image: None,
         };
         let history = |p: &[u32; 2]| history::pixel(recording, &options, *p);
-        let histories = pixels.iter().map(history).collect::<Result<_, _>>()?;
+        let mut findings = findings(&frame, maps.size);
+        findings.extend(judged.iter().flat_map(|j| profile_findings(&frame, j)));
         Ok(Self {
-            label: entry.label.clone(),
-            findings: findings(&frame, settings.size)
-                .into_iter()
-                .chain(of_profiles)
-                .collect(),
-            judged,
-            refused,
-            done,
+            label,
+            picture: Picture {
+                size: maps.size,
+                pixels: Vec::new(),
+            },
+            hashes: Vec::new(),
+            warnings: Vec::new(),
+            frame_ms: 0.0,
+            histories: how.pixels.iter().map(history).collect::<Result<_, _>>()?,
             maps,
             frame,
-            histories,
+            judged,
+            refused,
+            findings,
+            done: None,
             score: None,
         })
     }
+}
+
+/// What was judged, and why the rest was not.
+fn apart(all: Vec<Result<Judged, ProfileError>>) -> (Vec<Judged>, Vec<ProfileError>) {
+    let (mut judged, mut refused) = (Vec::new(), Vec::new());
+    for one in all {
+        match one {
+            Ok(one) => judged.push(one),
+            Err(why) => refused.push(why),
+        }
+    }
+    (judged, refused)
 }
 
 /// Errors against the exact soft shadow. They are of one light: scenes of several have
@@ -149,9 +203,10 @@ pub(super) fn measure_errors(
     let kind = ReferenceKind::Exact;
     let truth = Reference::new(scene, 0, settings.size, kind, None, &|| {})?;
     for (entry, subject) in entries.iter().zip(subjects) {
-        let under = truth.under(&subject.done.depth)?;
+        let Some(done) = &subject.done else { continue };
+        let under = truth.under(&done.depth)?;
         let picture = shaded(scene, &truth, &under, &entry.params, settings)?;
-        subject.score = Some(Score::measure(&under, &subject.done, &picture)?);
+        subject.score = Some(Score::measure(&under, done, &picture)?);
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ mod args;
 mod measure;
 mod page;
 mod run;
+mod trace;
 
 pub(crate) use args::ReportArgs;
 pub(crate) use run::run;

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use gnomon_pipeline::measure::render::RenderSettings;
-use gnomon_pipeline::world::scene::Scene;
+use gnomon_raster::GpuConfig;
 
 use super::measure::Subject;
 use crate::output::html::scatter::{Point, Scatter};
@@ -11,33 +10,32 @@ use crate::output::html::{bars, draws, frame, history, maps, page};
 use crate::output::json::worker_threads;
 use crate::output::png;
 use crate::output::tables::Table;
-use crate::overlay;
 
 /// The page's text.
-pub(super) fn make(scene: &Scene, settings: &RenderSettings, subjects: &[Subject]) -> String {
-    let [width, height] = settings.size;
+pub(super) fn make(scene: &str, gpu: &GpuConfig, repeat: u32, subjects: &[Subject]) -> String {
+    let [width, height] = subjects.first().map_or([0; 2], |s| s.maps.size);
     let mut body = String::new();
     if subjects.len() > 1 {
-        body += &compare(scene, subjects);
+        body += &compare(subjects);
     }
     for (number, subject) in subjects.iter().enumerate() {
         body += &section(number, subject);
     }
     page::Page {
-        title: format!("{}: where the work goes", scene.name),
+        title: format!("{scene}: where the work goes"),
         lead: format!(
             "{width}×{height} pixels, {}. Logical bytes are what the commands ask for, before any cache; those under a profile go between caches and memory, as that hardware is modelled.",
             subjects.iter().map(|s| s.label.as_str()).collect::<Vec<_>>().join("; ")
         ),
         body,
-        foot: foot(settings, subjects),
+        foot: foot(gpu, repeat, subjects),
     }
     .to_html()
 }
 
 fn section(number: usize, subject: &Subject) -> String {
     let title = page::escape(&subject.label);
-    let picture = png::encode(&overlay::picture(&subject.done));
+    let picture = png::encode(&subject.picture);
     let pixels: Vec<[u32; 2]> = subject.histories.iter().map(|h| h.pixel).collect();
     let mut out = format!("<section id=\"s{number}\">\n<h2>{title}</h2>\n");
     out += &maps::figure(number, picture, &subject.maps, &pixels, &command());
@@ -47,10 +45,11 @@ fn section(number: usize, subject: &Subject) -> String {
         .map(|h| history::details(number, h))
         .collect::<String>();
     let findings = subject.findings.iter().map(|f| f.text.clone());
-    let warnings = subject.done.warnings.iter();
-    let warnings = warnings.map(|w| format!("Warning: {}: {}", w.code, w.message));
     let refused = subject.refused.iter().map(|e| format!("Not judged: {e}."));
-    let lines: Vec<String> = findings.chain(refused).chain(warnings).collect();
+    let lines: Vec<String> = findings
+        .chain(refused)
+        .chain(subject.warnings.iter().cloned())
+        .collect();
     out += &page::list("Findings", &lines);
     out += &bars::passes(&subject.frame, &subject.judged);
     out += &bars::waterfall(&subject.frame);
@@ -64,7 +63,7 @@ fn section(number: usize, subject: &Subject) -> String {
 }
 
 /// Errors beside bytes and times.
-fn compare(scene: &Scene, subjects: &[Subject]) -> String {
+fn compare(subjects: &[Subject]) -> String {
     let header = ["technique", "RMSE", "bytes", "ms"];
     let mut table = Table::new("Techniques: error, bytes and time", &header);
     let mut points = Vec::new();
@@ -75,7 +74,7 @@ fn compare(scene: &Scene, subjects: &[Subject]) -> String {
             .and_then(|s| s.visibility.all)
             .map(|e| e.rmse);
         let shown = rmse.map_or("-".to_owned(), |r| r.to_string());
-        let (bytes, ms) = (s.frame.bytes(), s.done.frame_ms);
+        let (bytes, ms) = (s.frame.bytes(), s.frame_ms);
         table.rows.push(vec![
             s.label.clone(),
             shown,
@@ -86,11 +85,7 @@ fn compare(scene: &Scene, subjects: &[Subject]) -> String {
     }
     let mut out = page::table(&table);
     if points.is_empty() {
-        let why = if scene.lights.len() == 1 {
-            "no pixel could be compared"
-        } else {
-            "errors of visibility are of one light, and the scene has several"
-        };
+        let why = "they are of visibility in scenes of one light";
         return out + &format!("<p>No errors: {why}.</p>\n");
     }
     let of = |x: fn(&(String, f64, u64, f64)) -> f64| -> Vec<Point> {
@@ -119,8 +114,7 @@ fn compare(scene: &Scene, subjects: &[Subject]) -> String {
 }
 
 /// How the page was made, and what it is of.
-fn foot(settings: &RenderSettings, subjects: &[Subject]) -> Vec<(String, String)> {
-    let gpu = settings.gpu;
+fn foot(gpu: &GpuConfig, repeat: u32, subjects: &[Subject]) -> Vec<(String, String)> {
     let mut rows = vec![
         (
             "Version".to_owned(),
@@ -135,14 +129,14 @@ fn foot(settings: &RenderSettings, subjects: &[Subject]) -> Vec<(String, String)
                 gpu.simd,
                 gpu.tile,
                 if gpu.skip { "on" } else { "off" },
-                settings.repeat
+                repeat
             ),
         ),
         ("CPU".to_owned(), cpu()),
     ];
     for s in subjects {
-        rows.push((format!("Picture, {}", s.label), s.done.color_hash()));
-        rows.push((format!("Visibility, {}", s.label), s.done.visibility_hash()));
+        let hashes = s.hashes.iter();
+        rows.extend(hashes.map(|(what, hash)| (format!("{what}, {}", s.label), hash.clone())));
     }
     rows
 }

@@ -3,10 +3,11 @@
 use gnomon_pipeline::measure::render::RenderSettings;
 use gnomon_pipeline::techniques::Registry;
 use gnomon_traces::chrome::{ChromeTrace, chrome};
+use gnomon_traces::profile::Profile;
 
 use super::args::ReportArgs;
-use super::measure::{self, Subject};
-use super::page;
+use super::measure::{self, Observe, Subject};
+use super::{page, trace};
 use crate::error::CliError;
 use crate::output::files::{self, Batch};
 use crate::output::progress::Progress;
@@ -20,33 +21,12 @@ pub(crate) fn run(args: &ReportArgs, registry: &Registry) -> Result<(), CliError
     if let Some(path) = &args.chrome {
         files::check_extension("--chrome", path, "json")?;
     }
-    let entries = measure::entries(args, registry)?;
     let profiles = measure::profiles(args)?;
-    check_chrome(args, entries.len())?;
-    let scene = args.scene.open()?.at(args.time)?;
-    let settings = RenderSettings {
-        size: args.size.or(scene.size).unwrap_or(DEFAULT_SIZE),
-        gpu: args.gpu.config(),
-        repeat: args.repeat,
+    let (scene, subjects) = match trace::is_trace(args) {
+        true => of_trace(args, &profiles)?,
+        false => of_scene(args, registry, &profiles)?,
     };
-    check_pixels(args, settings.size)?;
-    png::check_room(settings.size)?;
-    let progress = Progress::new(entries.len() as u64 + 1);
-    let mut subjects = Vec::new();
-    for entry in &entries {
-        subjects.push(Subject::new(
-            entry,
-            &scene,
-            &settings,
-            &profiles,
-            &args.pixels,
-        )?);
-        progress.step();
-    }
-    measure::measure_errors(&scene, &settings, &entries, &mut subjects)?;
-    progress.step();
-    drop(progress);
-    let html = page::make(&scene, &settings, &subjects);
+    let html = page::make(&scene, &args.gpu.config(), args.repeat, &subjects);
     let mut batch = Batch::default();
     batch.stage(&args.out, html.as_bytes())?;
     let mut told = format!(
@@ -62,6 +42,54 @@ pub(crate) fn run(args: &ReportArgs, registry: &Registry) -> Result<(), CliError
     }
     batch.commit()?;
     output::print(&told)
+}
+
+/// The name of the recorded scene, and its frame.
+fn of_trace(args: &ReportArgs, profiles: &[Profile]) -> Result<(String, Vec<Subject>), CliError> {
+    let settings = RenderSettings {
+        size: DEFAULT_SIZE,
+        gpu: args.gpu.config(),
+        repeat: 1,
+    };
+    let how = Observe {
+        settings: &settings,
+        profiles,
+        pixels: &args.pixels,
+    };
+    let (name, subject) = trace::subject(args, &how)?;
+    Ok((name, vec![subject]))
+}
+
+/// The name of the scene, and its frame by each technique.
+fn of_scene(
+    args: &ReportArgs,
+    registry: &Registry,
+    profiles: &[Profile],
+) -> Result<(String, Vec<Subject>), CliError> {
+    let entries = measure::entries(args, registry)?;
+    check_chrome(args, entries.len())?;
+    let scene = args.scene.open()?.at(args.time)?;
+    let settings = RenderSettings {
+        size: args.size.or(scene.size).unwrap_or(DEFAULT_SIZE),
+        gpu: args.gpu.config(),
+        repeat: args.repeat,
+    };
+    check_pixels(args, settings.size)?;
+    png::check_room(settings.size)?;
+    let how = Observe {
+        settings: &settings,
+        profiles,
+        pixels: &args.pixels,
+    };
+    let progress = Progress::new(entries.len() as u64 + 1);
+    let mut subjects = Vec::new();
+    for entry in &entries {
+        subjects.push(Subject::of_scene(entry, &scene, &how)?);
+        progress.step();
+    }
+    measure::measure_errors(&scene, &settings, &entries, &mut subjects)?;
+    progress.step();
+    Ok((scene.name, subjects))
 }
 
 /// Along the bytes of the first profile, or else along logical ones.

@@ -88,6 +88,9 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
+    /// A profile of hardware is wrong, or does not fit the frame.
+    #[error(transparent)]
+    Profile(#[from] gnomon_traces::profile::ProfileError),
     /// A trace cannot be read or replayed.
     #[error(transparent)]
     Trace(#[from] TraceError),

@@ -79,7 +79,11 @@ fn one_operation_set_to_keep_turns_it_on_again() {
     for name in HARDWARE {
         let fails = |front, back| second(name, &state(front, back));
         assert_eq!(fails(face(keep, zero), quiet), Some(DepthFailOp), "{name}");
-        assert_eq!(fails(face(zero, keep), quiet), Some(StencilFailOp), "{name}");
+        assert_eq!(
+            fails(face(zero, keep), quiet),
+            Some(StencilFailOp),
+            "{name}"
+        );
         assert_eq!(fails(quiet, quiet), None, "{name}");
         // Only the simulator leaves the back face out of account.
         let back = (name != "imr-2008").then_some(DepthFailOp);
@@ -106,9 +110,18 @@ fn direction_equality_and_contents() {
     let changed = Some(DirectionChanged);
     let compare = Some(Compare);
     let invalid = Some(ContentsInvalid);
-    assert_eq!(reasons("imr-2003", &shape), [None, changed, compare, compare, invalid]);
-    assert_eq!(reasons("imr-2008", &shape), [None, compare, None, compare, invalid]);
-    assert_eq!(reasons("tbr-adreno", &shape), [None, changed, compare, compare, invalid]);
+    assert_eq!(
+        reasons("imr-2003", &shape),
+        [None, changed, compare, compare, invalid]
+    );
+    assert_eq!(
+        reasons("imr-2008", &shape),
+        [None, compare, None, compare, invalid]
+    );
+    assert_eq!(
+        reasons("tbr-adreno", &shape),
+        [None, changed, compare, compare, invalid]
+    );
     assert_eq!(reasons("gnomon", &shape), [None, None, None, compare, None]);
 }
 

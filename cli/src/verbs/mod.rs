@@ -6,11 +6,13 @@ pub(crate) mod debug;
 pub(crate) mod demo;
 pub(crate) mod diff;
 pub(crate) mod pixel;
+pub(crate) mod profiles;
 pub(crate) mod render;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;
 pub(crate) mod techniques;
+pub(crate) mod traffic;
 
 use gnomon_pipeline::technique::{Params, Technique, TechniqueError};
 

@@ -15,10 +15,12 @@ use crate::verbs::dump::DumpArgs;
 use crate::verbs::info::InfoArgs;
 use crate::verbs::pixel::PixelArgs;
 use crate::verbs::record::RecordArgs;
+use crate::verbs::profiles::ProfilesArgs;
 use crate::verbs::render::RenderArgs;
 use crate::verbs::replay::ReplayArgs;
 use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
+use crate::verbs::traffic::TrafficArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -59,6 +61,10 @@ pub(crate) enum Verb {
     Pixel(Box<PixelArgs>),
     /// Show a fragment's uniforms and varyings, and open its shader in a debugger
     Debug(Box<DebugArgs>),
+    /// Say what a recorded frame moves under profiles of hardware
+    Traffic(TrafficArgs),
+    /// List the profiles of hardware, or show where their values are from
+    Profiles(ProfilesArgs),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -75,6 +81,7 @@ impl Verb {
             Self::Diff(args) => verbs::diff::run(args),
             Self::Debug(args) => verbs::debug::run(args),
             Self::Pixel(args) => verbs::pixel::run(args),
+            Self::Profiles(args) => verbs::profiles::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
             Self::Report(args) => verbs::report::run(args, registry),
             Self::Record(args) => verbs::record::run(args, registry),
@@ -84,6 +91,7 @@ impl Verb {
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),
+            Self::Traffic(args) => verbs::traffic::run(args),
         }
     }
 }

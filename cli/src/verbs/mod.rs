@@ -9,12 +9,14 @@ pub(crate) mod dump;
 pub(crate) mod info;
 pub(crate) mod pixel;
 pub(crate) mod record;
+pub(crate) mod profiles;
 pub(crate) mod render;
 pub(crate) mod replay;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;
 pub(crate) mod techniques;
+pub(crate) mod traffic;
 
 use gnomon_pipeline::technique::{Params, Technique, TechniqueError};
 

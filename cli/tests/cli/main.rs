@@ -13,6 +13,7 @@ mod report;
 mod reproduce;
 mod same_bits;
 mod sweep;
+mod traffic;
 mod verbs;
 mod walk_through;
 mod wild;

@@ -40,7 +40,9 @@ fn list(json: bool) -> Result<(), CliError> {
     if json {
         return output::print_json(&ProfilesDocument { profiles });
     }
-    let lines = profiles.iter().map(|p| format!("{:<12} {}", p.name, p.summary));
+    let lines = profiles
+        .iter()
+        .map(|p| format!("{:<12} {}", p.name, p.summary));
     output::print(&lines.collect::<Vec<_>>().join("\n"))
 }
 
@@ -64,5 +66,10 @@ fn show(profile: &Profile, json: bool) -> Result<(), CliError> {
         format!("{} = {}\n    {origin}", fact.key, fact.value)
     });
     let lines: Vec<String> = lines.collect();
-    output::print(&format!("{}: {}\n{}", profile.name, profile.summary, lines.join("\n")))
+    output::print(&format!(
+        "{}: {}\n{}",
+        profile.name,
+        profile.summary,
+        lines.join("\n")
+    ))
 }

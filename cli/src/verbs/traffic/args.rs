@@ -6,9 +6,11 @@ use clap::{Args, ValueEnum};
 
 /// Flags of `traffic`.
 #[derive(Debug, Args)]
-#[command(after_help = "Logical bytes are what the commands ask for after the profile's HiZ, \
+#[command(
+    after_help = "Logical bytes are what the commands ask for after the profile's HiZ, \
 cache bytes go between units and caches, dram bytes between caches and memory. dram and \
-cache are modelled. `gnomon profiles` lists the profiles.")]
+cache are modelled. `gnomon profiles` lists the profiles."
+)]
 pub(crate) struct TrafficArgs {
     /// The trace
     #[arg(value_name = "FILE.gnt")]

@@ -140,9 +140,8 @@ fn pixel_rows(traffic: &Traffic) -> Vec<RowDocument> {
         return Vec::new();
     };
     let width = traffic.size[0] as usize;
-    let at = |(i, levels): (usize, Levels)| {
-        row(&format!("{},{}", i % width, i / width), "all", levels)
-    };
+    let at =
+        |(i, levels): (usize, Levels)| row(&format!("{},{}", i % width, i / width), "all", levels);
     let mut rows: Vec<RowDocument> = pixels.into_iter().enumerate().filter_map(at).collect();
     rows.extend(row("elsewhere", "all", elsewhere));
     rows

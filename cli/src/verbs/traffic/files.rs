@@ -73,7 +73,10 @@ fn quoted(cell: &str) -> String {
 pub(super) fn array(traffic: &Traffic, by: By) -> Vec<u8> {
     let bytes = |l: &Levels| l.dram.bytes() as f32;
     if by == By::Pixel {
-        let pixels = traffic.pixels().map(|(pixels, _)| pixels).unwrap_or_default();
+        let pixels = traffic
+            .pixels()
+            .map(|(pixels, _)| pixels)
+            .unwrap_or_default();
         let values: Vec<f32> = pixels.iter().map(bytes).collect();
         return npy::encode(traffic.size, &values);
     }

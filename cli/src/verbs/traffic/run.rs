@@ -21,13 +21,17 @@ pub(crate) fn run(args: &TrafficArgs) -> Result<(), CliError> {
     let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
     let runs = runs(args, &profiles);
     let out = args.out.as_ref();
-    let kind = out.map(|path| kind(path, args.by, runs.len())).transpose()?;
+    let kind = out
+        .map(|path| kind(path, args.by, runs.len()))
+        .transpose()?;
     let trace = Trace::open(&args.trace)?;
     let shape = trace.shape(args.frame)?;
     let judged = runs.iter().map(|(p, o)| judge(args, &trace, &shape, p, *o));
     let judged: Vec<Traffic> = judged.collect::<Result<_, _>>()?;
     let name = args.trace.display().to_string();
-    let documents = judged.iter().map(|t| TrafficDocument::new(&name, t, args.by));
+    let documents = judged
+        .iter()
+        .map(|t| TrafficDocument::new(&name, t, args.by));
     let documents: Vec<TrafficDocument> = documents.collect();
     if let (Some(path), Some(kind)) = (out, kind) {
         let mut batch = Batch::default();

@@ -10,7 +10,14 @@ use crate::output::tables::Table;
 const MOST: usize = 200;
 
 pub(super) fn text(document: &TrafficDocument) -> String {
-    let header = [document.by, "client", "logical", "cache", "dram read", "dram write"];
+    let header = [
+        document.by,
+        "client",
+        "logical",
+        "cache",
+        "dram read",
+        "dram write",
+    ];
     let title = format!("{} under {}", document.trace, document.profile);
     let mut table = Table::new(&title, &header);
     let mut last = None;

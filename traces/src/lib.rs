@@ -5,6 +5,7 @@
 
 mod error;
 mod format;
+pub mod frozen;
 pub mod history;
 mod meta;
 pub mod profile;

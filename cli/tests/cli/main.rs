@@ -7,6 +7,7 @@ mod common;
 mod compare;
 mod environment;
 mod overlays;
+mod pixel;
 mod render;
 mod reproduce;
 mod same_bits;

@@ -8,4 +8,4 @@ mod words;
 
 pub(crate) use args::{PixelArgs, PlaceArgs};
 pub(crate) use run::{Shown, run};
-pub(crate) use words::{float, stored};
+pub(crate) use words::float;

@@ -16,7 +16,16 @@ pub(super) fn text(h: &History, frame: usize) -> String {
         h.events.len()
     );
     let header = [
-        "event", "pass", "draw", "prim", "end", "fragment z", "depth", "stencil", "colour", "why",
+        "event",
+        "pass",
+        "draw",
+        "prim",
+        "end",
+        "fragment z",
+        "depth",
+        "stencil",
+        "colour",
+        "why",
     ];
     let mut table = Table::new(&title, &header);
     for (i, e) in h.events.iter().enumerate() {
@@ -101,7 +110,11 @@ fn colors(h: &History, e: &PixelEvent) -> String {
         }
         _ => None,
     };
-    e.color.iter().filter_map(one).collect::<Vec<_>>().join(", ")
+    e.color
+        .iter()
+        .filter_map(one)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn load_words(kind: &EventKind) -> String {
@@ -136,7 +149,9 @@ fn store_words(kind: &EventKind) -> String {
     let colors = color.iter().map(|op| ("colour", *op));
     let depth = depth_stencil.iter();
     let depth = depth.flat_map(|(z, s)| [("depth", *z), ("stencil", *s)]);
-    let gone = depth.chain(colors).filter(|(_, op)| *op == StoreOp::Discard);
+    let gone = depth
+        .chain(colors)
+        .filter(|(_, op)| *op == StoreOp::Discard);
     let words: Vec<_> = gone.map(|(what, _)| format!("{what} discarded")).collect();
     words.join(", ")
 }

@@ -6,11 +6,18 @@ use gnomon_pipeline::techniques::Registry;
 use crate::error::CliError;
 use crate::flags::ListArgs;
 use crate::verbs;
+use crate::verbs::bisect::BisectArgs;
 use crate::verbs::compare::CompareArgs;
 use crate::verbs::debug::DebugArgs;
 use crate::verbs::demo::DemoArgs;
+use crate::verbs::diff::DiffArgs;
+use crate::verbs::dump::DumpArgs;
+use crate::verbs::info::InfoArgs;
 use crate::verbs::pixel::PixelArgs;
+use crate::verbs::record::RecordArgs;
 use crate::verbs::render::RenderArgs;
+use crate::verbs::replay::ReplayArgs;
+use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
@@ -32,8 +39,22 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
+    /// Record frames of a scene in a trace, to be replayed and looked into
+    Record(Box<RecordArgs>),
+    /// Draw a frame of a trace again and verify that it is what it was
+    Replay(ReplayArgs),
+    /// Say what is in a trace; no shader is needed
+    Info(InfoArgs),
+    /// Print the commands of a trace, a JSON document a line
+    Dump(DumpArgs),
+    /// Show where a frame's work and bytes go, as one page to look at
+    Report(Box<ReportArgs>),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
+    /// Say what two traces differ in: state, the first draw and pixel, counters
+    Diff(DiffArgs),
+    /// Find the change of state that makes two traces differ
+    Bisect(BisectArgs),
     /// Show everything that happened to a pixel of a recorded frame
     Pixel(Box<PixelArgs>),
     /// Show a fragment's uniforms and varyings, and open its shader in a debugger
@@ -49,10 +70,17 @@ impl Verb {
     pub(crate) fn run(&self, registry: &Registry) -> Result<(), CliError> {
         match self {
             Self::Compare(args) => verbs::compare::run(args, registry),
+            Self::Bisect(args) => verbs::bisect::run(args),
             Self::Demo(args) => verbs::demo::run(args),
+            Self::Diff(args) => verbs::diff::run(args),
             Self::Debug(args) => verbs::debug::run(args),
             Self::Pixel(args) => verbs::pixel::run(args),
             Self::Render(args) => verbs::render::run(args, registry),
+            Self::Record(args) => verbs::record::run(args, registry),
+            Self::Replay(args) => verbs::replay::run(args),
+            Self::Info(args) => verbs::info::run(args),
+            Self::Dump(args) => verbs::dump::run(args),
+            Self::Report(args) => verbs::report::run(args, registry),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),

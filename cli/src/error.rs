@@ -36,6 +36,12 @@ pub(crate) enum CliError {
     /// A claim cannot be measured.
     #[error(transparent)]
     Reproduce(#[from] ReproduceError),
+    /// A replay is not what was recorded.
+    #[error("{0}")]
+    ReplayDiffers(String),
+    /// A pixel has no history.
+    #[error(transparent)]
+    History(#[from] HistoryError),
     /// A flag's value is wrong.
     #[error("{flag} is `{value}`; {valid}")]
     Flag {
@@ -85,12 +91,26 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
-    /// A trace cannot be used.
+    /// A trace cannot be read or replayed.
     #[error(transparent)]
     Trace(#[from] TraceError),
-    /// A pixel's history cannot be told.
+    /// Something of a trace cannot be had.
+    #[error("{}: {source}", .path.display())]
+    InTrace {
+        /// The file.
+        path: PathBuf,
+        /// What.
+        source: TraceError,
+    },
+    /// No cause of a difference is found.
     #[error(transparent)]
-    History(#[from] HistoryError),
+    Bisect(#[from] gnomon_traces::BisectError),
+    /// The GPU refuses a frame.
+    #[error(transparent)]
+    Gpu(#[from] gnomon_raster::Error),
+    /// What was compared is different, which has been said.
+    #[error("different")]
+    Differs,
     /// A check of our own failed: a fault of the program or the machine.
     #[error("check failed: {0}")]
     Check(String),
@@ -100,7 +120,10 @@ impl CliError {
     /// 1 for a failed check, 2 for bad input.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Check(_) | Self::History(HistoryError::Broken { .. }) => 1,
+            Self::Check(_)
+            | Self::Differs
+            | Self::ReplayDiffers(_)
+            | Self::History(HistoryError::Broken { .. }) => 1,
             _ => 2,
         }
     }

@@ -53,6 +53,10 @@ fn print_usage(error: &clap::Error) -> ExitCode {
 }
 
 fn print_error(error: &CliError) -> ExitCode {
+    // What differs has been said on stdout.
+    if matches!(error, CliError::Differs) {
+        return ExitCode::from(error.exit_code());
+    }
     // As above; `eprintln!` would panic.
     let _ = writeln!(std::io::stderr().lock(), "error: {error}");
     ExitCode::from(error.exit_code())

@@ -18,6 +18,7 @@
 //! of its family, and a line with name and version in `stages!` below. Raise the
 //! version when what it computes changes.
 
+mod bounded;
 pub mod convolution;
 pub mod coverage;
 pub mod coverage_table;

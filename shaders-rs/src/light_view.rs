@@ -14,8 +14,10 @@ use gnomon_raster::shader::{Fragment, FragmentShader};
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, Lanes, Mask, uniforms};
 
+use crate::bounded::bounded_uniforms;
 use crate::surface::PixelRays;
 use crate::vector::each2;
+use gnomon_raster::MAX_TEXTURE_SIZE;
 
 /// Cosine between ray and facet, below which depth is interpolated.
 const EDGE_ON: f32 = 1e-3;
@@ -200,7 +202,7 @@ pub struct LightMapping {
     /// Which positions belong to the view.
     pub region: ViewRegion,
 }
-uniforms!(LightMapping {
+bounded_uniforms!(LightMapping {
     centre,
     axes,
     projection,
@@ -210,7 +212,7 @@ uniforms!(LightMapping {
     range,
     size,
     region
-});
+}: |m| [("texels along a side", m.size.into(), MAX_TEXTURE_SIZE.into())]);
 
 /// A position in a light view.
 #[derive(Clone, Copy)]

@@ -23,10 +23,13 @@
 use std::sync::Arc;
 
 use gnomon_raster::math::dot3;
-use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
+use gnomon_raster::shader::{
+    Fragment, FragmentOutputs, FragmentShader, UniformError, UniformReader, UniformWriter, Uniforms,
+};
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
+use crate::bounded;
 use crate::light_view::{LightMapping, Projection};
 use crate::soft_volumes::texel_of;
 use crate::vector::each2;
@@ -280,7 +283,18 @@ fn blocks<L: Lanes>(
 /// hard shadow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoxTaps(pub u32);
-uniforms!(BoxTaps(side));
+
+impl Uniforms for BoxTaps {
+    fn put(&self, to: &mut UniformWriter) {
+        self.0.put(to);
+    }
+
+    fn take(from: &mut UniformReader<'_>) -> Result<Self, UniformError> {
+        let side = u32::take(from)?;
+        bounded::check([("texels along a side", side.into(), 256)], from)?;
+        Ok(Self(side))
+    }
+}
 
 impl ShadowFilter for BoxTaps {
     #[inline(always)]

@@ -126,6 +126,22 @@ pub fn run_probed(case: &TwinCase, config: GpuConfig, probe: [u32; 2]) -> Result
     run_with(case, config, Some(wants))
 }
 
+/// A case as a recording, commands and all.
+///
+/// # Errors
+/// What the GPU refuses.
+pub fn recorded(case: &TwinCase) -> Result<Recording, Error> {
+    let mut gpu = Gpu::new(GpuConfig {
+        threads: 1,
+        ..GpuConfig::default()
+    })?;
+    let targets = upload(&mut gpu, case)?;
+    let mut recording = gpu.save()?;
+    let passes = case.passes.iter().map(|p| render_pass(p, &targets));
+    recording.list.passes = passes.collect();
+    Ok(recording)
+}
+
 fn run_with(
     case: &TwinCase,
     config: GpuConfig,

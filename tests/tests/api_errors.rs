@@ -105,6 +105,11 @@ fn rows() -> Vec<Row> {
             u.gpu.create_texture(&d).map(|_| ())
         }, "InvalidTexture", &["4×4×4", "depth-stencil"]),
 
+        ("shade a vertex beyond the buffer", |u| {
+            let buffer = VertexBuffer { data: vec![0.0; 12], stride: 4 };
+            let vertex = &u.pass.draws[0].pipeline.vertex;
+            vertex.positions(Some(&buffer), &[2, 3], 0).map(|_| ())
+        }, "VertexOutOfRange", &["vertex 3", "3 vertices"]),
         ("read an unknown texture", |u| u.gpu.texture(foreign()).map(|_| ()), "NoSuchTexture", &["id 6", "2 textures"]),
         ("fill an unknown texture", |u| u.gpu.texture_mut(foreign()).map(|_| ()), "NoSuchTexture", &["id 6", "2 textures"]),
         ("attach an unknown texture", submit!(u => u.pass.color[0].texture = foreign()), "NoSuchTexture", &["id 6", "2 textures"]),

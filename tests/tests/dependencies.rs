@@ -7,7 +7,8 @@ use gnomon_tests::sources::{below, read, root};
 use toml::{Table, Value};
 
 /// Crate, its folder, and the workspace crates that it may need.
-/// Dependency goes one way: raster ← shaders ← pipeline ← claims ← cli, raster ← traces ← cli.
+/// Dependency goes one way: raster ← shaders ← pipeline ← claims ← cli, raster ← traces ← cli,
+/// traces ← golden.
 const LAYERS: &[(&str, &str, &[&str])] = &[
     ("gnomon-raster", "raster", &[]),
     ("gnomon-shaders", "shaders-rs", &["gnomon-raster"]),
@@ -22,6 +23,11 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
         &["gnomon-raster", "gnomon-shaders", "gnomon-pipeline"],
     ),
     ("gnomon-traces", "traces", &["gnomon-raster"]),
+    (
+        "gnomon-golden",
+        "golden",
+        &["gnomon-raster", "gnomon-traces"],
+    ),
     (
         "gnomon",
         "cli",

@@ -3,22 +3,30 @@
 //! Stands on the emulated GPU alone; of shaders it knows what a
 //! [`ShaderTable`](gnomon_raster::shader::ShaderTable) tells it.
 
+pub mod chrome;
+mod difference;
 mod error;
+pub mod findings;
 mod format;
 pub mod frozen;
+mod hashes;
 pub mod history;
+pub mod maps;
 mod meta;
+mod prefix;
 pub mod profile;
 mod record;
 mod replay;
+pub mod report;
 mod run;
 mod shape;
 mod stream;
-mod tiles;
 mod trace;
 pub mod witness;
 
+pub use difference::*;
 pub use error::TraceError;
+pub use hashes::DrawHashes;
 pub use meta::{Meta, Mode};
 pub use record::{RecordOptions, Recorder, record};
 pub use replay::{DrawDifference, ReplayDepth, ReplayDifference, Replayed, replay};

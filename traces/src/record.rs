@@ -12,9 +12,9 @@ use crate::format::events::{EventWriter, TexelWriter};
 use crate::format::section::{Codec, Section};
 use crate::format::{counters, file, v1};
 use crate::frozen::freeze;
+use crate::hashes::{DrawHashes, Hashing};
 use crate::meta::{Meta, Mode};
 use crate::run;
-use crate::tiles::TileHashes;
 use crate::trace::{BLOB, COUN, FRAM, HASH, META, SHAD, TEXL, TRAF, Trace};
 use crate::witness::Witness;
 
@@ -149,9 +149,9 @@ impl Recorder {
         };
         let mut traffic = None;
         if self.options.traffic {
-            let (report, observed) = self.observe(recording)?;
+            let (report, draws, observed) = self.observe(recording)?;
             counts.unskipped = report.passes.iter().map(pass_counts).collect();
-            hashes.draws = observed.iter().map(|p| p.hashes.clone()).collect();
+            hashes.draws = draws.lists();
             traffic = Some(observed);
         }
         self.section(SHAD, 0, bytes_of(&shaders));
@@ -223,8 +223,8 @@ impl Recorder {
     fn observe(
         &self,
         recording: &Recording,
-    ) -> Result<(SubmitReport, Vec<PassTraffic>), TraceError> {
-        let mut traffic = TrafficWriter::default();
+    ) -> Result<(SubmitReport, DrawHashes, Vec<PassTraffic>), TraceError> {
+        let mut traffic = TrafficWriter::new(recording);
         let wants = Wants {
             depth_ranges: true,
             texels: true,
@@ -237,7 +237,7 @@ impl Recorder {
             gpu.submit_observed(&recording.list, wants, &mut traffic)
         };
         let report = run().map_err(|source| self.refused(source))?;
-        Ok((report, traffic.passes))
+        Ok((report, traffic.hashes.done(), traffic.passes))
     }
 
     fn refused(&self, source: gnomon_raster::Error) -> TraceError {
@@ -271,12 +271,11 @@ fn pass_counts(pass: &PassReport) -> v1::PassCounts {
 struct PassTraffic {
     events: Vec<u8>,
     texels: Vec<u8>,
-    hashes: Vec<v1::TileHash>,
 }
 
 /// Writes down what it hears.
-#[derive(Default)]
 struct TrafficWriter {
+    hashes: Hashing,
     passes: Vec<PassTraffic>,
     /// Of the pass that is under way.
     open: Open,
@@ -285,7 +284,6 @@ struct TrafficWriter {
 struct Open {
     events: EventWriter,
     texels: TexelWriter,
-    hashes: TileHashes,
     heard: u64,
 }
 
@@ -294,19 +292,27 @@ impl Default for Open {
         Self {
             events: EventWriter::new(),
             texels: TexelWriter::new(),
-            hashes: TileHashes::default(),
             heard: 0,
         }
     }
 }
 
-impl AccessObserver for TrafficWriter {
-    fn batch(&mut self, _: usize, batch: &AccessBatch<'_>) {
-        let open = &mut self.open;
-        for block in batch.blocks {
-            open.events.push(block);
-            open.hashes.hear(block);
+impl TrafficWriter {
+    fn new(recording: &Recording) -> Self {
+        let passes = recording.list.passes.iter();
+        Self {
+            hashes: Hashing::new(passes.map(|p| p.draws.len())),
+            passes: Vec::new(),
+            open: Open::default(),
         }
+    }
+}
+
+impl AccessObserver for TrafficWriter {
+    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
+        self.hashes.batch(pass, batch);
+        let open = &mut self.open;
+        batch.blocks.iter().for_each(|b| open.events.push(b));
         for texel in batch.texels {
             open.texels.push(open.heard + u64::from(texel.event), texel);
         }
@@ -314,9 +320,8 @@ impl AccessObserver for TrafficWriter {
     }
 
     fn end(&mut self, _: usize, _: &PassReport) {
-        let mut open = core::mem::take(&mut self.open);
+        let open = core::mem::take(&mut self.open);
         self.passes.push(PassTraffic {
-            hashes: open.hashes.take(),
             events: open.events.finish(),
             texels: open.texels.finish(),
         });

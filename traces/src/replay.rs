@@ -2,16 +2,14 @@
 
 use gnomon_raster::shader::ShaderTable;
 use gnomon_raster::{
-    AccessBatch, AccessObserver, BlockAccess, Gpu, GpuConfig, PassReport, Recording, SubmitReport,
-    Wants,
+    AccessBatch, AccessObserver, BlockAccess, Gpu, GpuConfig, Recording, SubmitReport, Wants,
 };
 
 use crate::error::TraceError;
 use crate::format::v1::{Hashes, TileHash};
+use crate::hashes::{DrawHashes, TILE};
 use crate::run;
-use crate::tiles::{TileHashes, tile_of};
 use crate::trace::{HASH, TRAF, Trace};
-use crate::witness::Witness;
 
 /// How far a replay is verified.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -171,11 +169,14 @@ impl Replayed {
         then: &Hashes,
         config: GpuConfig,
     ) -> Result<(), TraceError> {
-        let mut now = HashWriter::default();
-        self.observe(frame, config, true, &mut now)?;
+        let unskipped = GpuConfig {
+            skip: false,
+            ..config
+        };
+        let now = run::guarded(frame, || DrawHashes::of(&self.recording, unskipped))?.lists();
         let passes = &self.recording.list.passes;
         self.draws = passes.iter().map(|p| p.draws.len()).sum();
-        let mut passes = then.draws.iter().zip(&now.passes).enumerate();
+        let mut passes = then.draws.iter().zip(&now).enumerate();
         let first = passes.find_map(|(i, (a, b))| first_difference(a, b).map(|at| (i, at)));
         let Some((pass, (draw, tile))) = first else {
             return Ok(());
@@ -184,7 +185,7 @@ impl Replayed {
             at: (pass, draw, tile),
             written: Default::default(),
         };
-        self.observe(frame, config, false, &mut pixels)?;
+        self.observe(frame, unskipped, &mut pixels)?;
         if trace.has(TRAF, frame as u32, pass as u32) {
             trace.events(frame, &mut pixels)?;
         }
@@ -200,7 +201,7 @@ impl Replayed {
             draw: Some(DrawDifference {
                 draw: draw as usize,
                 label: label.unwrap_or_default(),
-                tile: [tile[1], tile[0]],
+                tile,
                 pixels: pixels.written.values().map(|m| m.count_ones()).sum(),
                 first: pixels.first(),
                 shader: shader.unwrap_or_default(),
@@ -209,25 +210,17 @@ impl Replayed {
         Ok(())
     }
 
-    /// Draws the frame once more, without skipping, as the hashes of draws were made.
+    /// Draws the frame once more.
     fn observe(
         &self,
         frame: usize,
         config: GpuConfig,
-        witness: bool,
         observer: &mut dyn AccessObserver,
     ) -> Result<(), TraceError> {
-        let wants = Wants {
-            witness: witness.then_some(&Witness),
-            ..Wants::default()
-        };
         run::guarded(frame, || {
-            let mut gpu = Gpu::new(GpuConfig {
-                skip: false,
-                ..config
-            })?;
+            let mut gpu = Gpu::new(config)?;
             gpu.load(&self.recording)?;
-            gpu.submit_observed(&self.recording.list, wants, observer)?;
+            gpu.submit_observed(&self.recording.list, Wants::default(), observer)?;
             Ok(())
         })
     }
@@ -242,23 +235,6 @@ fn first_difference(then: &[TileHash], now: &[TileHash]) -> Option<(u32, [u16; 2
     match (a, b) {
         (Some(a), Some(b)) => Some(a.min(b)),
         (a, b) => a.or(b),
-    }
-}
-
-/// Hashes of all passes.
-#[derive(Default)]
-struct HashWriter {
-    passes: Vec<Vec<TileHash>>,
-    open: TileHashes,
-}
-
-impl AccessObserver for HashWriter {
-    fn batch(&mut self, _: usize, batch: &AccessBatch<'_>) {
-        batch.blocks.iter().for_each(|b| self.open.hear(b));
-    }
-
-    fn end(&mut self, _: usize, _: &PassReport) {
-        self.passes.push(self.open.take());
     }
 }
 
@@ -283,7 +259,7 @@ impl Pixels {
 
 impl AccessObserver for Pixels {
     fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
-        let here = |b: &&BlockAccess| (pass, b.draw, tile_of(b.block)) == self.at;
+        let here = |b: &&BlockAccess| (pass, b.draw, b.block.map(|b| b / TILE)) == self.at;
         for b in batch.blocks.iter().filter(here) {
             let color = b.color_write.iter().fold(0, |m, w| m | w);
             let mask = b.z_write | b.stencil_write | color;

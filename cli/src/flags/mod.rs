@@ -10,4 +10,4 @@ pub(crate) use environment::EnvArgs;
 pub(crate) use execution::GpuArgs;
 pub(crate) use listing::ListArgs;
 pub(crate) use scene::SceneArgs;
-pub(crate) use values::{parse_setting, parse_size, parse_time};
+pub(crate) use values::{parse_rate, parse_setting, parse_size, parse_time};

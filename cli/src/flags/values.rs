@@ -30,6 +30,14 @@ pub(crate) fn parse_time(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Frames per second.
+pub(crate) fn parse_rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
+        _ => Err("expected a number of frames per second above 0".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,6 +10,7 @@ use gnomon_raster::{
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use super::draw_documents::{DrawDocument, draw_documents};
 use super::tables;
 
 /// A JSON object whose keys keep their order.
@@ -42,6 +43,9 @@ pub(crate) struct RenderDocument {
     time_ms: Times,
     passes: Vec<PassDocument>,
     totals: WorkDocument,
+    /// Only where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    draws: Option<Vec<DrawDocument>>,
     /// `null` for techniques that add no coverage of wedges.
     wedge_work: Option<WedgeWorkDocument>,
     casters: Vec<CasterDocument>,
@@ -116,7 +120,7 @@ struct WorkDocument {
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
-struct FragmentDocument {
+pub(crate) struct FragmentDocument {
     generated: u64,
     hiz_killed: u64,
     bounds_failed: u64,
@@ -127,14 +131,14 @@ struct FragmentDocument {
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
-struct TileDocument {
+pub(crate) struct TileDocument {
     tested: u64,
     culled: u64,
     accepted: u64,
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
-struct PrimitiveDocument {
+pub(crate) struct PrimitiveDocument {
     vertex_shader_invocations: u64,
     input: u64,
     non_finite: u64,
@@ -147,7 +151,7 @@ struct PrimitiveDocument {
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
-struct EventDocument {
+pub(crate) struct EventDocument {
     silent_z_writes: u64,
     silent_stencil_writes: u64,
     silent_color_writes: u64,
@@ -158,7 +162,7 @@ struct EventDocument {
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
-struct TrafficDocument {
+pub(crate) struct TrafficDocument {
     read_accesses: u64,
     read_bytes: u64,
     write_accesses: u64,
@@ -222,11 +226,20 @@ impl RenderDocument {
             },
             passes: done.report.passes.iter().map(PassDocument::new).collect(),
             totals: WorkDocument::total(&done.report),
+            draws: None,
             wedge_work: WedgeWorkDocument::of(done),
             casters: casters(job.scene, done),
             figures: figures(done),
             warnings: done.warnings.iter().map(WarningDocument::new).collect(),
             files,
+        }
+    }
+
+    /// The same with what each draw counted.
+    pub(crate) fn with_draws(self, report: &SubmitReport) -> Self {
+        Self {
+            draws: Some(draw_documents(report)),
+            ..self
         }
     }
 }
@@ -314,7 +327,7 @@ impl WorkDocument {
     }
 }
 
-fn traffic(named: Vec<(String, Traffic)>) -> Object<TrafficDocument> {
+pub(super) fn traffic(named: Vec<(String, Traffic)>) -> Object<TrafficDocument> {
     Object(
         named
             .into_iter()

@@ -1,5 +1,7 @@
 //! What leaves the program: files, JSON, tables, progress.
 
+mod draw_documents;
+pub(crate) mod draws;
 pub(crate) mod files;
 pub(crate) mod html;
 pub(crate) mod json;

@@ -97,7 +97,7 @@ const MOST_LABELS: usize = 6;
 
 /// Where a heat scale ends: at the value that all but one in 200 of the values
 /// above zero stay below, so that a few extremes do not darken the rest.
-fn scale_top(values: impl Iterator<Item = u64>) -> u64 {
+pub(crate) fn scale_top(values: impl Iterator<Item = u64>) -> u64 {
     let mut values: Vec<u64> = values.filter(|v| *v > 0).collect();
     values.sort_unstable();
     let last = values.len().saturating_sub(1);
@@ -106,13 +106,13 @@ fn scale_top(values: impl Iterator<Item = u64>) -> u64 {
 
 /// Place of a value on a heat scale. The square root leaves room for the small
 /// values, which are the many.
-fn place(value: u64, top: u64) -> f32 {
+pub(crate) fn place(value: u64, top: u64) -> f32 {
     (value as f32 / top.max(1) as f32).sqrt()
 }
 
 /// Labels about evenly along the scale from 0 to `top`; the last one says when
 /// there is more.
-fn scale_labels(top: u64, max: u64, show: fn(u64) -> String) -> Vec<(f32, String)> {
+pub(crate) fn scale_labels(top: u64, max: u64, show: fn(u64) -> String) -> Vec<(f32, String)> {
     let mut values: Vec<u64> = [0, 1, 4, 9, 16].map(|n| (top * n + 8) / 16).to_vec();
     values.dedup();
     let mut labels: Vec<(f32, String)> =

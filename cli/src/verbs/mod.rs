@@ -1,10 +1,17 @@
 //! One file or folder per verb.
 
+pub(crate) mod bisect;
 pub(crate) mod compare;
 pub(crate) mod debug;
 pub(crate) mod demo;
+pub(crate) mod diff;
+pub(crate) mod dump;
+pub(crate) mod info;
 pub(crate) mod pixel;
+pub(crate) mod record;
 pub(crate) mod render;
+pub(crate) mod replay;
+pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;
 pub(crate) mod techniques;

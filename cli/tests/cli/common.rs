@@ -88,6 +88,10 @@ impl Run {
         String::from_utf8(self.output.stderr.clone()).unwrap()
     }
 
+    pub(crate) fn code(&self) -> i32 {
+        self.output.status.code().expect("no signal")
+    }
+
     /// Asserts exit code 0.
     pub(crate) fn fine(self) -> Self {
         assert_eq!(

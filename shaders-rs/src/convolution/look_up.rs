@@ -7,6 +7,7 @@ use gnomon_raster::simd::each4;
 use gnomon_raster::{F32, I32, Lanes, U32, uniforms};
 
 use super::{Atlas, Encoding};
+use crate::bounded::bounded_uniforms;
 use crate::coverage::outlined;
 
 /// Tiles of one kind in a texture slot.
@@ -87,12 +88,10 @@ pub struct Mipmaps {
     /// The longer side: 0 is u, 1 is v.
     pub along: usize,
 }
-uniforms!(Mipmaps {
-    side,
-    lod_bias,
-    probes,
-    along
-});
+bounded_uniforms!(Mipmaps { side, lod_bias, probes, along }: |m| [
+    ("squares along the longer side", m.probes.into(), 64),
+    ("the longer side", m.along as u64, 1),
+]);
 
 /// Where [`Mipmaps`] look.
 #[derive(Clone, Copy)]

@@ -22,6 +22,7 @@ pub mod look_up;
 pub mod prefilter;
 pub mod visibility;
 
+use crate::bounded::bounded_uniforms;
 use gnomon_raster::{F32, Lanes, uniforms};
 
 /// Most terms of the expansion.
@@ -45,14 +46,9 @@ pub struct Expansion {
     /// Largest series depth, 1 − 1/(2M).
     pub reach: f32,
 }
-uniforms!(Expansion {
-    terms,
-    frequencies,
-    bias,
-    gain,
-    offset,
-    reach
-});
+bounded_uniforms!(Expansion { terms, frequencies, bias, gain, offset, reach }: |e| [
+    ("the number of terms", e.terms as u64, MAX_TERMS as u64),
+]);
 
 impl Expansion {
     /// Tiles of four channels that hold the terms' sines and cosines.

@@ -8,6 +8,7 @@ use gnomon_raster::simd::each4;
 use gnomon_raster::{F32, I32, Lanes, Mask, U32, uniforms};
 
 use super::look_up::bits_of;
+use crate::bounded::bounded_uniforms;
 use crate::soft_volumes::reads;
 
 /// Most textures that are treated at a time.
@@ -160,14 +161,9 @@ pub struct SumStep {
     /// Sums of unsigned integers, modulo 2³².
     pub integer: bool,
 }
-uniforms!(SumStep {
-    textures,
-    axis,
-    step,
-    twice,
-    side,
-    integer
-});
+bounded_uniforms!(SumStep { textures, axis, step, twice, side, integer }: |s| [
+    ("an axis", s.axis as u64, 1),
+]);
 
 impl SumStep {
     /// Where the entry `steps` back is, and where there is one; outside the texture

@@ -69,6 +69,9 @@ uniforms!(ConvolutionShadow<P> {
     sharpening,
 });
 
+/// No kernel gets better after as many: uniforms of a file may ask for any number.
+const MOST_ITERATIONS: u32 = 64;
+
 /// The receiver's halves of the terms: 2/c_k · sin(c_k d) and 2/c_k · cos(c_k d).
 type Terms<L> = [[F32<L>; 2]; MAX_TERMS];
 
@@ -195,7 +198,7 @@ impl<P: Prefiltered> FragmentShader for ConvolutionShadow<P> {
         let mut distance = F32::splat(l, range.near);
         let mut average = zero;
         let mut lit = !reached;
-        for _ in 0..=self.iterations {
+        for _ in 0..=self.iterations.min(MOST_ITERATIONS) {
             let window = self.window(l, at.uv, distance, at.distance);
             lit = lit | !P::share(&window).gt(zero);
             f.discard(lit);

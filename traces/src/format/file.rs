@@ -64,6 +64,10 @@ pub(crate) fn read(file: &[u8]) -> Result<Contents, TraceError> {
         entries.push(entry);
     }
     if file.ends_with(&MAGIC) && file.len() > at {
+        let footer = file[at..].first_chunk().map(|b| u64::from_le_bytes(*b));
+        if let Some(index) = entries.iter().find(|e| Some(e.offset) == footer) {
+            return Err(index.wrong("the footer says that it is the index, its tag does not"));
+        }
         return Err(TraceError::Section {
             tag: "????".to_owned(),
             offset: at as u64,
@@ -106,6 +110,9 @@ fn index_faults(
     entries: &[Entry],
     end: usize,
 ) -> Result<Option<String>, TraceError> {
+    if (index.version, index.frame, index.part) != (1, 0, 0) {
+        return Err(index.wrong("an index has version 1, frame 0 and part 0"));
+    }
     let listed = index.unpack(file)?.data;
     let (listed, rest) = listed.as_chunks::<{ 8 + HEADER }>();
     for (entry, listed) in entries.iter().zip(listed) {

@@ -174,7 +174,7 @@ pub(crate) struct Hashes {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct TileHash {
     pub(crate) draw: u32,
-    /// Row, column.
+    /// Column, row.
     pub(crate) tile: [u16; 2],
     pub(crate) hash: u64,
 }

@@ -88,7 +88,7 @@ pub(crate) struct TechniqueSetting {
     pub(crate) setting: (String, String),
 }
 
-fn parse_entry(text: &str) -> Result<EntryArg, String> {
+pub(crate) fn parse_entry(text: &str) -> Result<EntryArg, String> {
     let mut parts = text.split(':');
     let technique = parts.next().unwrap_or_default().trim();
     if technique.is_empty() {

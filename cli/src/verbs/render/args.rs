@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
-use crate::flags::{EnvArgs, GpuArgs, SceneArgs, parse_setting, parse_size, parse_time};
+use crate::flags::{
+    EnvArgs, GpuArgs, SceneArgs, parse_rate, parse_setting, parse_size, parse_time,
+};
 use crate::overlay::OverlayKind;
 
 /// Flags of `render`.
@@ -50,6 +52,13 @@ pub(crate) struct RenderArgs {
     /// Print one JSON document on stdout, the summary on stderr
     #[arg(long)]
     pub(crate) json: bool,
+    /// What the JSON document has work of, besides the frame: each pass, or each pass
+    /// and each draw
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = Per::Pass, requires = "json")]
+    pub(crate) per: Per,
+    /// Also print what each draw counted, in full numbers, in the order of submission
+    #[arg(long, conflicts_with = "frames")]
+    pub(crate) draws: bool,
     /// A map that lights the scene.
     #[command(flatten)]
     pub(crate) environment: EnvArgs,
@@ -58,9 +67,9 @@ pub(crate) struct RenderArgs {
     pub(crate) lights: Option<usize>,
 }
 
-fn parse_rate(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
-        _ => Err("expected a number of frames per second above 0".to_owned()),
-    }
+/// What has work of its own in the JSON document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Per {
+    Pass,
+    Draw,
 }

@@ -23,7 +23,7 @@ use crate::output::tables::{self, Table};
 use crate::output::warnings;
 
 /// Frames per second where none are given.
-const RATE: f64 = 24.0;
+pub(crate) const RATE: f64 = 24.0;
 
 #[derive(Serialize)]
 struct FramesDocument {

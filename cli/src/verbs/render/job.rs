@@ -8,14 +8,14 @@ use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
-use super::args::RenderArgs;
+use super::args::{Per, RenderArgs};
 use crate::error::CliError;
 use crate::output::files;
 use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
 use crate::overlay::{self, OverlayKind};
 use crate::verbs;
 
-const DEFAULT_SIZE: [u32; 2] = [800, 600];
+pub(crate) const DEFAULT_SIZE: [u32; 2] = [800, 600];
 
 /// Everything the command line asked for, checked.
 pub(super) struct RenderJob {
@@ -25,6 +25,7 @@ pub(super) struct RenderJob {
     pub(super) settings: RenderSettings,
     pub(super) out: PathBuf,
     pub(super) overlays: Vec<(OverlayKind, PathBuf)>,
+    per: Per,
 }
 
 impl RenderJob {
@@ -65,6 +66,7 @@ impl RenderJob {
             },
             overlays: overlay_paths(&args.overlay, &out),
             out,
+            per: args.per,
         })
     }
 
@@ -76,7 +78,11 @@ impl RenderJob {
             gpu: self.settings.gpu,
             repeat: self.settings.repeat,
         };
-        RenderDocument::new(of, done, files)
+        let document = RenderDocument::new(of, done, files);
+        match self.per {
+            Per::Pass => document,
+            Per::Draw => document.with_draws(&done.report),
+        }
     }
 
     pub(super) fn wedges(&self) -> Result<Option<SceneWedges>, CliError> {

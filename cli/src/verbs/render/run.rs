@@ -12,7 +12,7 @@ use crate::error::CliError;
 use crate::output::json::{FileDocument, worker_threads};
 use crate::output::progress::Progress;
 use crate::output::tables::{self, Named};
-use crate::output::{self, numbers, warnings};
+use crate::output::{self, draws, numbers, warnings};
 
 /// Renders one frame, or an animation, and writes what was asked for.
 pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError> {
@@ -31,7 +31,17 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     if args.json {
         output::print_json(&job.document(&done, files.clone()))?;
     }
-    output::print_summary(&summarise(&job, &done, &files), args.json)
+    let mut text = summarise(&job, &done, &files);
+    if args.draws {
+        text += &describe_draws(&done);
+    }
+    output::print_summary(&text, args.json)
+}
+
+/// Work and traffic of every draw.
+fn describe_draws(done: &Rendered) -> String {
+    let tables = [draws::work(&done.report), draws::traffic(&done.report)];
+    tables.map(|t| format!("\n{}", t.to_text())).concat()
 }
 
 fn summarise(job: &RenderJob, done: &Rendered, files: &[FileDocument]) -> String {

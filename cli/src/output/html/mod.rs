@@ -1,4 +1,12 @@
-//! A report as one self-contained page: pictures as data URIs, no scripts.
+//! Pages that stand alone: pictures as data URIs, nothing fetched.
+
+pub(crate) mod bars;
+pub(crate) mod draws;
+pub(crate) mod frame;
+pub(crate) mod history;
+pub(crate) mod maps;
+pub(crate) mod page;
+pub(crate) mod scatter;
 
 use std::fmt::Write;
 
@@ -86,7 +94,7 @@ fn row(cells: &[String], columns: usize) -> String {
     format!("<tr>{cells}</tr>\n")
 }
 
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
@@ -94,7 +102,7 @@ fn escape(text: &str) -> String {
 }
 
 /// RFC 4648, with padding.
-fn base64(bytes: &[u8]) -> String {
+pub(crate) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {

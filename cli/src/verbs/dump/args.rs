@@ -1,0 +1,22 @@
+//! The command line of `gnomon dump`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Flags of `dump`.
+#[derive(Debug, Args)]
+pub(crate) struct DumpArgs {
+    /// The trace
+    #[arg(value_name = "FILE.gnt")]
+    pub(crate) trace: PathBuf,
+    /// Which frame
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) frame: usize,
+    /// Also write what textures hold at first, as packed bytes: texture-0-mip-0-layer-0.bin
+    #[arg(long, value_name = "DIR")]
+    pub(crate) images: Option<PathBuf>,
+    /// Also write vertices and indices: pass-0-draw-0-vertices.bin, -indices.bin
+    #[arg(long, value_name = "DIR")]
+    pub(crate) buffers: Option<PathBuf>,
+}

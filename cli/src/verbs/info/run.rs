@@ -1,0 +1,50 @@
+//! Says what is in a trace.
+
+use gnomon_traces::Trace;
+
+use super::args::InfoArgs;
+use super::document::TraceDocument;
+use crate::error::CliError;
+use crate::output::{self, numbers};
+
+/// Prints what the trace says and holds.
+pub(crate) fn run(args: &InfoArgs) -> Result<(), CliError> {
+    let trace = Trace::open(&args.trace)?;
+    let document = TraceDocument::new(&args.trace, &trace)?;
+    match args.json {
+        true => output::print_json(&document),
+        false => output::print(&text(&document)),
+    }
+}
+
+fn text(d: &TraceDocument) -> String {
+    let [w, h] = d.meta.size;
+    let mut text = format!(
+        "{}: {}, {}\nid {}\nby {}: {} {} {w}x{h}\n",
+        d.file,
+        d.contents(),
+        numbers::bytes(d.bytes),
+        d.id,
+        d.meta.producer,
+        d.meta.scene,
+        d.meta.technique,
+    );
+    for (key, value) in &d.meta.params {
+        text += &format!("  {key}={value}\n");
+    }
+    for (number, frame) in d.contents.iter().enumerate() {
+        text += &format!("frame {number}: {} textures\n", frame.textures);
+        for pass in &frame.passes {
+            let (draws, attachments) = (pass.draws, pass.attachments);
+            text += &format!(
+                "  {}: {draws} draws, {attachments} attachments\n",
+                pass.name
+            );
+        }
+        text += &format!("  shaders: {}\n", frame.shaders.join(", "));
+    }
+    if let Some(lost) = &d.lost {
+        text += &format!("warning: {lost}\n");
+    }
+    text
+}

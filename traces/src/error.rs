@@ -72,7 +72,7 @@ pub enum TraceError {
         /// The draw's label.
         label: String,
         /// Why.
-        source: ShaderTableError,
+        source: Box<ShaderTableError>,
     },
     /// A shader that has no name cannot be recorded by name.
     #[error(

@@ -8,6 +8,7 @@ mod difference;
 mod error;
 pub mod findings;
 mod format;
+pub mod frozen;
 mod hashes;
 pub mod history;
 pub mod judged;

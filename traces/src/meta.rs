@@ -45,6 +45,8 @@ pub enum Mode {
     /// By name, version and uniforms: replaying runs them.
     #[default]
     Live,
+    /// By what they gave: replaying looks it up.
+    Frozen,
 }
 
 impl Meta {

@@ -11,8 +11,9 @@ use crate::format::encode::{Encoded, bytes_of, encode};
 use crate::format::events::{EventWriter, TexelWriter};
 use crate::format::section::{Codec, Section};
 use crate::format::{counters, file, v1};
+use crate::frozen::freeze;
 use crate::hashes::{DrawHashes, Hashing};
-use crate::meta::Meta;
+use crate::meta::{Meta, Mode};
 use crate::run;
 use crate::trace::{BLOB, COUN, FRAM, HASH, META, SHAD, TEXL, TRAF, Trace};
 use crate::witness::Witness;
@@ -26,6 +27,9 @@ pub struct RecordOptions {
     /// Record block accesses: without them a trace is small, and replays, but says nothing
     /// of traffic.
     pub traffic: bool,
+    /// Record what shaders gave in the place of the shaders ([`crate::frozen`]): the trace
+    /// is larger, and needs no code to be drawn again. Closures can only be recorded so.
+    pub frozen: bool,
 }
 
 impl Default for RecordOptions {
@@ -33,6 +37,7 @@ impl Default for RecordOptions {
         Self {
             gpu: GpuConfig::default(),
             traffic: true,
+            frozen: false,
         }
     }
 }
@@ -130,7 +135,12 @@ impl Recorder {
     /// # Errors
     /// A stage has no identity, or the GPU refuses the frame.
     pub fn add(&mut self, recording: &Recording) -> Result<(), TraceError> {
-        let Encoded { frame, shaders } = encode(recording, &mut self.blobs)?;
+        let frozen = match self.options.frozen {
+            true => Some(freeze(recording, self.options.gpu).map_err(|e| self.refused(e))?),
+            false => None,
+        };
+        let written = frozen.as_ref().unwrap_or(recording);
+        let Encoded { frame, shaders } = encode(written, &mut self.blobs)?;
         let mut hashes = v1::Hashes::default();
         let skipping = self.draw(recording, &mut hashes)?;
         let mut counts = v1::Counts {
@@ -168,6 +178,10 @@ impl Recorder {
             },
             frames: self.frames,
             traffic: self.options.traffic,
+            mode: match self.options.frozen {
+                true => Mode::Frozen,
+                false => Mode::Live,
+            },
             ..self.meta
         };
         let meta = serde_json::to_vec(&meta).expect("plain data in memory");

@@ -268,7 +268,7 @@ impl Trace {
                 pass: unmade.pass,
                 draw: unmade.draw,
                 label: unmade.label,
-                source: unmade.source,
+                source: Box::new(unmade.source),
             },
         })
     }

@@ -8,6 +8,7 @@ mod compare;
 mod draws;
 mod environment;
 mod overlays;
+mod pixel;
 mod render;
 mod report;
 mod reproduce;

@@ -16,6 +16,7 @@ use gnomon_raster::{
 use super::blob::Blobs;
 use super::numbers::Numbered;
 use super::v1;
+use crate::frozen;
 use crate::shape::{DrawShape, FragmentShape, FrameShape, PassShape};
 
 /// Most bytes that the textures of a frame may take together, padding left out.
@@ -240,7 +241,11 @@ impl Written<'_> {
         number: u32,
         table: &ShaderTable,
     ) -> std::result::Result<VertexStage, PipelineFault> {
-        Ok(table.vertex(&self.identity(number, 0)?)?)
+        let identity = self.identity(number, 0)?;
+        match frozen::is_frozen(&identity.name) {
+            true => Ok(frozen::table().vertex(&identity)?),
+            false => Ok(table.vertex(&identity)?),
+        }
     }
 
     /// What the shader may do must be what it was when it was recorded: shapes rely on it.
@@ -249,7 +254,11 @@ impl Written<'_> {
         number: u32,
         table: &ShaderTable,
     ) -> std::result::Result<FragmentStage, PipelineFault> {
-        let stage = table.fragment(&self.identity(number, 1)?)?;
+        let identity = self.identity(number, 1)?;
+        let stage = match frozen::is_frozen(&identity.name) {
+            true => frozen::table().fragment(&identity)?,
+            false => table.fragment(&identity)?,
+        };
         let (o, shader) = (stage.outputs(), &self.shaders[number as usize]);
         let given = (o.discards, o.depth, o.textures as u32);
         if given == shader.outputs {

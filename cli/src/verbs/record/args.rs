@@ -38,6 +38,10 @@ pub(crate) struct RecordArgs {
     /// Leave block accesses out: the trace replays, but says nothing of traffic
     #[arg(long)]
     pub(crate) no_traffic: bool,
+    /// Keep what shaders gave instead of the shaders: larger, and drawn again without
+    /// the code
+    #[arg(long)]
+    pub(crate) frozen: bool,
     /// How to execute; no byte of the trace depends on it, but that --no-skip turns off
     /// what techniques leave out themselves.
     #[command(flatten)]

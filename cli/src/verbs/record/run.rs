@@ -86,16 +86,18 @@ fn start(
     let options = RecordOptions {
         gpu: args.gpu.config(),
         traffic: !args.no_traffic,
+        frozen: args.frozen,
     };
     Recorder::new(meta, options)
 }
 
 fn summarise(args: &RecordArgs, document: &TraceDocument) -> String {
     format!(
-        "{}  {}  {}  id {}  live\n",
+        "{}  {}  {}  id {}  {}\n",
         args.out.display(),
         document.contents(),
         numbers::bytes(document.bytes),
         document.id,
+        if args.frozen { "frozen" } else { "live" },
     )
 }

@@ -19,6 +19,7 @@ use crate::verbs::render::RenderArgs;
 use crate::verbs::replay::ReplayArgs;
 use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
+use crate::verbs::trim::TrimArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -49,6 +50,8 @@ pub(crate) enum Verb {
     Dump(DumpArgs),
     /// Show where a frame's work and bytes go, as one page to look at
     Report(Box<ReportArgs>),
+    /// Cut frames, passes or draws out of a trace
+    Trim(TrimArgs),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
     /// Say what two traces differ in: state, the first draw and pixel, counters
@@ -81,6 +84,7 @@ impl Verb {
             Self::Info(args) => verbs::info::run(args),
             Self::Dump(args) => verbs::dump::run(args),
             Self::Report(args) => verbs::report::run(args, registry),
+            Self::Trim(args) => verbs::trim::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),

@@ -15,6 +15,7 @@ pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;
 pub(crate) mod techniques;
+pub(crate) mod trim;
 
 use gnomon_pipeline::technique::{Params, Technique, TechniqueError};
 

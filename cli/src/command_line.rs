@@ -21,6 +21,7 @@ use crate::verbs::replay::ReplayArgs;
 use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 use crate::verbs::traffic::TrafficArgs;
+use crate::verbs::trim::TrimArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -51,6 +52,8 @@ pub(crate) enum Verb {
     Info(InfoArgs),
     /// Print the commands of a trace, a JSON document a line
     Dump(DumpArgs),
+    /// Cut frames, passes or draws out of a trace
+    Trim(TrimArgs),
     /// Measure the papers' quantitative claims again, theirs beside ours
     Reproduce(Box<ReproduceArgs>),
     /// Say what two traces differ in: state, the first draw and pixel, counters
@@ -88,6 +91,7 @@ impl Verb {
             Self::Replay(args) => verbs::replay::run(args),
             Self::Info(args) => verbs::info::run(args),
             Self::Dump(args) => verbs::dump::run(args),
+            Self::Trim(args) => verbs::trim::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),

@@ -107,4 +107,26 @@ pub enum TraceError {
         /// What it said.
         message: String,
     },
+    /// There is nothing such to keep.
+    #[error("{what} {given} are not there; valid is from 0 to {count}, the end behind the start")]
+    Range {
+        /// Frames, passes or draws.
+        what: &'static str,
+        /// What was asked for.
+        given: String,
+        /// How many there are.
+        count: usize,
+    },
+    /// What would be kept is not what it was.
+    #[error(
+        "trimmed, {what} in pass {pass} of frame {frame} would be something else; nothing was written"
+    )]
+    Trimmed {
+        /// The frame.
+        frame: usize,
+        /// The pass.
+        pass: usize,
+        /// What differs.
+        what: String,
+    },
 }

@@ -23,6 +23,7 @@ mod run;
 mod shape;
 mod stream;
 mod trace;
+mod trim;
 pub mod witness;
 
 pub use difference::*;
@@ -33,4 +34,5 @@ pub use record::{RecordOptions, Recorder, record};
 pub use replay::{DrawDifference, ReplayDepth, ReplayDifference, Replayed, replay};
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
 pub use trace::{FrameCounters, SectionNote, ShaderNote, Trace};
+pub use trim::{Keep, trim};
 pub use witness::Witness;

@@ -17,6 +17,7 @@ pub(crate) mod reproduce;
 pub(crate) mod scenes;
 pub(crate) mod techniques;
 pub(crate) mod traffic;
+pub(crate) mod trim;
 
 use gnomon_pipeline::technique::{Params, Technique, TechniqueError};
 

@@ -1,0 +1,78 @@
+//! What is cut out of a trace shows what it showed in it.
+
+use gnomon_raster::GpuConfig;
+use gnomon_shaders::table;
+use gnomon_traces::{Keep, ReplayDepth, Trace, TraceError, replay, trim};
+
+use crate::golden::goldens;
+use crate::user_frame;
+
+fn cut(trace: &Trace, keep: &Keep) -> Trace {
+    let cut = trim(trace, keep, &table(), GpuConfig::default());
+    let cut = cut.unwrap_or_else(|e| panic!("{keep:?}: {e}"));
+    let done = replay(&cut, 0, &table(), GpuConfig::default(), ReplayDepth::Draws).unwrap();
+    assert_eq!(done.difference, None, "{keep:?}");
+    cut
+}
+
+fn draws(trace: &Trace) -> usize {
+    let passes = trace.shape(0).unwrap().passes;
+    passes.iter().map(|p| p.draws.len()).sum()
+}
+
+/// Bytes of all textures.
+fn state(trace: &Trace) -> usize {
+    let textures = trace.shape(0).unwrap().textures;
+    let bytes = textures.iter().map(|d| {
+        let texel = d.format.bytes() as usize + usize::from(d.format.is_depth_stencil());
+        let texels: u32 = d.size.iter().product();
+        2 * 6 * texel * texels as usize
+    });
+    bytes.sum()
+}
+
+#[test]
+fn every_prefix_and_every_draw_shows_what_it_showed() {
+    let mut all = goldens();
+    all.push(("user".to_owned(), user_frame::trace()));
+    for (name, trace) in all {
+        let count = draws(&trace);
+        let few = count.min(12);
+        for n in 0..few {
+            let at = n * count / few;
+            for range in [0..at + 1, at..at + 1] {
+                let kept = cut(&trace, &Keep::Draws(0, range.clone()));
+                assert_eq!(draws(&kept), range.len(), "{name} {range:?}");
+                let most = trace.to_bytes().len() + state(&trace);
+                assert!(kept.to_bytes().len() <= most, "{name} {range:?}");
+            }
+        }
+        let whole = cut(&trace, &Keep::Draws(0, 0..count));
+        let again = cut(&whole, &Keep::Draws(0, 0..count));
+        assert_eq!(whole.id().unwrap(), again.id().unwrap(), "{name}");
+        let passes = trace.shape(0).unwrap().passes.len();
+        for pass in 0..passes.min(6) {
+            let kept = cut(&trace, &Keep::Passes(0, pass..pass + 1));
+            let again = cut(&kept, &Keep::Passes(0, 0..1));
+            assert!(kept.to_bytes() == again.to_bytes(), "{name} pass {pass}");
+        }
+        cut(&trace, &Keep::Frames(0..1));
+    }
+}
+
+#[test]
+fn what_is_not_there_cannot_be_kept() {
+    let trace = user_frame::trace();
+    for keep in [
+        Keep::Draws(0, 0..99),
+        Keep::Passes(0, 1..1),
+        Keep::Frames(1..2),
+        Keep::Draws(3, 0..1),
+    ] {
+        let refused = trim(&trace, &keep, &table(), GpuConfig::default()).unwrap_err();
+        assert!(
+            matches!(refused, TraceError::Range { .. }),
+            "{keep:?}: {refused}"
+        );
+    }
+}

@@ -13,6 +13,7 @@ use gnomon_raster::{
 
 use crate::error::TraceError;
 use crate::format::v1::TileHash;
+use crate::meta::Mode;
 use crate::prefix::until;
 use crate::record::{RecordOptions, Recorder};
 use crate::run::guarded;
@@ -43,6 +44,7 @@ pub fn trim(
     let options = RecordOptions {
         gpu: config,
         traffic: trace.meta().traffic,
+        frozen: trace.meta().mode == Mode::Frozen,
     };
     let mut recorder = Recorder::new(trace.meta().clone(), options);
     let (frames, cuts) = match keep {

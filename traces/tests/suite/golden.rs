@@ -71,7 +71,11 @@ fn recording_depends_on_nothing_but_the_frame() {
     for (name, golden) in goldens() {
         let mut first = None;
         for gpu in configs() {
-            let options = RecordOptions { gpu, traffic: true };
+            let options = RecordOptions {
+                gpu,
+                traffic: true,
+                ..RecordOptions::default()
+            };
             let mut recorder = Recorder::new(golden.meta().clone(), options);
             for frame in 0..golden.frames() {
                 recorder

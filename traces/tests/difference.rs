@@ -286,8 +286,9 @@ fn what_a_pass_begins_with_is_told_and_blamed() {
 /// One change in each draw in turn: told as the only one, first seen where it was made.
 #[test]
 fn a_single_change_in_any_draw_is_found() {
+    type Change = (&'static str, fn(&mut Draw));
     let a = frame();
-    let changes: [(&str, fn(&mut Draw)); 4] = [
+    let changes: [Change; 4] = [
         ("depth_stencil.stencil.front.pass_op", |d| {
             let p = Arc::make_mut(&mut d.pipeline);
             p.depth_stencil.stencil.front.pass_op = StencilOperation::DecrementWrap;

@@ -4,6 +4,7 @@ mod canvas;
 pub(crate) mod diverging;
 mod font;
 mod grid;
+pub(crate) mod heat_scale;
 mod legend;
 pub mod plot;
 mod projection;

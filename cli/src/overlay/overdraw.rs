@@ -1,6 +1,7 @@
 //! Fragments generated at each pixel.
 
-use super::{Source, name_passes_left_out, place, scale_labels, scale_top};
+use super::{Source, name_passes_left_out};
+use crate::draw::heat_scale::{place, scale_labels, scale_top};
 use crate::draw::{Canvas, Legend, Picture, heat};
 use crate::output::numbers;
 

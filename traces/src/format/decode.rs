@@ -359,11 +359,11 @@ fn descriptor(t: &v1::Texture) -> Result<TextureDescriptor> {
     })
 }
 
-fn load<T: Copy>(op: &v1::Load<T>) -> LoadOp<T> {
+fn load<T: Copy>(op: &v1::LoadOp<T>) -> LoadOp<T> {
     match op {
-        v1::Load::Load => LoadOp::Load,
-        v1::Load::Clear(v) => LoadOp::Clear(*v),
-        v1::Load::DontCare => LoadOp::DontCare,
+        v1::LoadOp::Load => LoadOp::Load,
+        v1::LoadOp::Clear(v) => LoadOp::Clear(*v),
+        v1::LoadOp::DontCare => LoadOp::DontCare,
     }
 }
 

@@ -261,11 +261,11 @@ pub(crate) fn bytes_of<T: serde::Serialize>(value: &T) -> Vec<u8> {
     postcard::to_stdvec(value).expect("plain data in memory")
 }
 
-fn load<T, U>(op: LoadOp<T>, value: impl FnOnce(T) -> U) -> v1::Load<U> {
+fn load<T, U>(op: LoadOp<T>, value: impl FnOnce(T) -> U) -> v1::LoadOp<U> {
     match op {
-        LoadOp::Load => v1::Load::Load,
-        LoadOp::Clear(v) => v1::Load::Clear(value(v)),
-        LoadOp::DontCare => v1::Load::DontCare,
+        LoadOp::Load => v1::LoadOp::Load,
+        LoadOp::Clear(v) => v1::LoadOp::Clear(value(v)),
+        LoadOp::DontCare => v1::LoadOp::DontCare,
     }
 }
 

@@ -94,7 +94,7 @@ pub(crate) struct Pass {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Load<T> {
+pub(crate) enum LoadOp<T> {
     Load,
     Clear(T),
     DontCare,
@@ -105,7 +105,7 @@ pub(crate) struct Color {
     pub(crate) texture: u32,
     pub(crate) mip: u32,
     pub(crate) layer: u32,
-    pub(crate) load: Load<[f32; 4]>,
+    pub(crate) load: LoadOp<[f32; 4]>,
     pub(crate) discard: bool,
 }
 
@@ -114,9 +114,9 @@ pub(crate) struct Depth {
     pub(crate) texture: u32,
     pub(crate) mip: u32,
     pub(crate) layer: u32,
-    pub(crate) depth_load: Load<f32>,
+    pub(crate) depth_load: LoadOp<f32>,
     pub(crate) depth_discard: bool,
-    pub(crate) stencil_load: Load<u8>,
+    pub(crate) stencil_load: LoadOp<u8>,
     pub(crate) stencil_discard: bool,
 }
 

@@ -245,7 +245,7 @@ impl Contents {
                 .and_then(|()| self.usable())
         };
         let may_kill = s.faces.iter().any(|f| f.compare != C::Always);
-        let depends = s.faces.iter().any(|f| depends_on_depth(f));
+        let depends = s.faces.iter().any(depends_on_depth);
         self.frozen |= may_kill || depends;
         if s.write && (matches!(s.compare, C::Always | C::NotEqual) || changed) {
             self.valid = false;

@@ -60,6 +60,12 @@ struct PassPlan {
 /// The entry of a block whose depths are those that the next access will report.
 const PENDING: u64 = u64::MAX;
 
+/// Whether a shader of the frame looks anything up.
+fn reads_textures(shape: &FrameShape) -> bool {
+    let mut draws = shape.passes.iter().flat_map(|p| &p.draws);
+    draws.any(|d| d.fragment.is_some_and(|f| f.textures > 0))
+}
+
 impl Judge {
     /// Ready for the accesses of a frame of this shape.
     ///
@@ -93,7 +99,7 @@ impl Judge {
                 .collect(),
             entries: vec![PENDING; lines],
             hiz: vec![HizCounts::default(); rows],
-            texels_recorded: false,
+            texels_recorded: !reads_textures(shape),
             begun: 0,
             bins: Bins::default(),
             waiting: Waiting::default(),

@@ -66,7 +66,7 @@ pub struct Traffic {
     pub size: [u32; 2],
     /// Depth and stencil's cache, colour's.
     pub caches: [CacheCounts; 2],
-    /// Look-ups were recorded; otherwise textures have logical bytes only.
+    /// All look-ups were recorded; otherwise textures have logical bytes only.
     pub texels_recorded: bool,
     pub(super) ledger: Ledger,
 }

@@ -6,9 +6,9 @@ use std::fmt::Write;
 use gnomon_traces::maps::{MapKind, Maps};
 
 use super::{base64, escape};
+use crate::draw::heat_scale::{place, scale_labels, scale_top};
 use crate::draw::{Picture, heat};
 use crate::output::png;
-use crate::overlay::{place, scale_labels, scale_top};
 
 const NAMES: [(MapKind, &str, &str); 4] = [
     (

@@ -18,8 +18,8 @@ pub(crate) struct ReplayArgs {
     /// Compare what each draw leaves, and not only where passes differ
     #[arg(long)]
     pub(crate) deep: bool,
-    /// Write the picture of the frame
-    #[arg(long, value_name = "FILE.png", requires = "frame")]
+    /// Write the picture of the frame; of several, say which with --frame
+    #[arg(long, value_name = "FILE.png")]
     pub(crate) out: Option<PathBuf>,
     /// How to execute.
     #[command(flatten)]

@@ -18,6 +18,16 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         Some(frame) => frame..frame.saturating_add(1),
         None => 0..trace.frames(),
     };
+    if args.out.is_some() && frames.len() > 1 {
+        return Err(CliError::Flag {
+            flag: "--out",
+            value: "one file".to_owned(),
+            valid: format!(
+                "the trace has {} frames: say which with --frame",
+                frames.len()
+            ),
+        });
+    }
     let table = gnomon_shaders::table();
     let depth = match args.deep {
         true => ReplayDepth::Draws,

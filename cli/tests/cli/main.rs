@@ -14,6 +14,7 @@ mod report;
 mod reproduce;
 mod same_bits;
 mod sweep;
+mod traces;
 mod traffic;
 mod verbs;
 mod walk_through;

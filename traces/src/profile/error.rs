@@ -54,7 +54,8 @@ pub enum ProfileError {
     /// The hardware cannot do what the frame does.
     #[error(
         "profile `{profile}`: draw `{draw}` of pass `{pass}` blends into {format}, which this \
-         hardware cannot; use --set color-format=rgba8"
+         hardware cannot{}",
+        if .format == "Rgba16Float" { "; use --set color-format=rgba8" } else { "" }
     )]
     Unsupported {
         /// The profile.

@@ -1,0 +1,91 @@
+//! Traces on the command line: recorded, looked into, cut, compared; and refused.
+
+use std::fs;
+
+use crate::common::Folder;
+
+fn recorded(name: &str, flags: &str) -> Folder {
+    let folder = Folder::new(name);
+    let command = format!("record parallel-plates --size 48x32 {flags} --out a.gnt");
+    folder.gnomon(&command).fine();
+    folder
+}
+
+#[test]
+fn a_frame_is_recorded_told_of_and_replayed() {
+    let folder = recorded("traces-replay", "");
+    let info = folder.gnomon("info a.gnt --json").fine();
+    let info: serde_json::Value = serde_json::from_str(&info.stdout()).unwrap();
+    assert_eq!(info["meta"]["scene"], "parallel-plates");
+    let replayed = folder.gnomon("replay a.gnt --deep --out a.png").fine();
+    assert!(replayed.stdout().contains("equal"), "{}", replayed.stdout());
+    folder
+        .gnomon("render parallel-plates --size 48x32 --out b.png")
+        .fine();
+    let [a, b] = ["a.png", "b.png"].map(|name| fs::read(folder.path(name)).unwrap());
+    assert_eq!(a, b, "the picture of a trace is the picture of its scene");
+    let lines = folder.gnomon("dump a.gnt").fine().stdout();
+    assert!(lines.lines().count() >= 3);
+    for line in lines.lines() {
+        serde_json::from_str::<serde_json::Value>(line).unwrap();
+    }
+}
+
+#[test]
+fn equal_frames_have_no_difference_and_others_exit_with_1() {
+    let folder = recorded("traces-diff", "");
+    let again = "record parallel-plates --size 48x32 --threads 1 --tile 16 --simd scalar";
+    folder.gnomon(&format!("{again} --out b.gnt")).fine();
+    let [a, b] = ["a.gnt", "b.gnt"].map(|name| fs::read(folder.path(name)).unwrap());
+    assert_eq!(a, b, "a file does not depend on how it was made");
+    folder.gnomon("diff a.gnt b.gnt").fine();
+    folder
+        .gnomon(&format!("{again} --set method=zfail --out c.gnt"))
+        .fine();
+    let different = folder.gnomon("diff a.gnt c.gnt --json");
+    assert_eq!(different.code(), 1);
+    let document: serde_json::Value = serde_json::from_str(&different.stdout()).unwrap();
+    assert_eq!(document["equal"], false);
+    assert_eq!(document["made"][0]["name"], "method");
+    assert!(!document["states"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn a_trimmed_trace_replays() {
+    let folder = recorded("traces-trim", "");
+    folder.gnomon("trim a.gnt --passes 0..1 --out b.gnt").fine();
+    folder.gnomon("replay b.gnt").fine();
+    folder
+        .gnomon("trim a.gnt --passes 7..9 --out c.gnt")
+        .refused(&["7..9"]);
+    assert!(!folder.path("c.gnt").exists());
+}
+
+#[test]
+fn what_is_no_trace_is_refused_by_every_verb() {
+    let folder = recorded("traces-bad", "");
+    let whole = fs::read(folder.path("a.gnt")).unwrap();
+    fs::write(folder.path("text.gnt"), "[scene]\n").unwrap();
+    fs::write(folder.path("cut.gnt"), &whole[..whole.len() / 3]).unwrap();
+    let mut flipped = whole.clone();
+    flipped[200] ^= 4;
+    fs::write(folder.path("flipped.gnt"), flipped).unwrap();
+    for verb in ["replay", "info", "dump", "report"] {
+        let out = if verb == "report" { "--out r.html" } else { "" };
+        let run = |file: &str| folder.gnomon(&format!("{verb} {file} {out}"));
+        run("none.gnt").refused(&["none.gnt"]);
+        run("text.gnt").refused(&["text.gnt", "89 47 4E 54"]);
+        run("flipped.gnt").refused(&["flipped.gnt", "byte"]);
+    }
+    folder.gnomon("replay cut.gnt").refused(&["cut.gnt"]);
+    folder.gnomon("diff a.gnt text.gnt").refused(&["text.gnt"]);
+    folder
+        .gnomon("replay a.gnt --frame 3")
+        .refused(&["frame 3"]);
+    folder
+        .gnomon("pixel a.gnt 48 0")
+        .refused(&["(48, 0)", "0 to 47"]);
+    folder
+        .gnomon("traffic a.gnt --profile nothing")
+        .refused(&["nothing", "imr-2008"]);
+}

@@ -16,6 +16,14 @@ pub enum TraceError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A file is not what it should be.
+    #[error("{}: {source}", .path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<TraceError>,
+    },
     /// These bytes are no trace at all.
     #[error("not a trace: {reason}; a trace begins with the bytes 89 47 4E 54 0D 0A 1A 0A")]
     NotATrace {

@@ -89,7 +89,10 @@ impl Trace {
             path: path.to_owned(),
             source,
         })?;
-        Self::read(bytes)
+        Self::read(bytes).map_err(|source| TraceError::InFile {
+            path: path.to_owned(),
+            source: Box::new(source),
+        })
     }
 
     /// The trace that `bytes` are.

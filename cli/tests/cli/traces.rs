@@ -16,7 +16,7 @@ fn a_frame_is_recorded_told_of_and_replayed() {
     let folder = recorded("traces-replay", "");
     let info = folder.gnomon("info a.gnt --json").fine();
     let info: serde_json::Value = serde_json::from_str(&info.stdout()).unwrap();
-    assert_eq!(info["meta"]["scene"], "parallel-plates");
+    assert_eq!(info["scene"], "parallel-plates");
     let replayed = folder.gnomon("replay a.gnt --deep --out a.png").fine();
     assert!(replayed.stdout().contains("equal"), "{}", replayed.stdout());
     folder
@@ -66,7 +66,7 @@ fn what_is_no_trace_is_refused_by_every_verb() {
     let folder = recorded("traces-bad", "");
     let whole = fs::read(folder.path("a.gnt")).unwrap();
     fs::write(folder.path("text.gnt"), "[scene]\n").unwrap();
-    fs::write(folder.path("cut.gnt"), &whole[..whole.len() / 3]).unwrap();
+    fs::write(folder.path("cut.gnt"), &whole[..400]).unwrap();
     let mut flipped = whole.clone();
     flipped[200] ^= 4;
     fs::write(folder.path("flipped.gnt"), flipped).unwrap();
@@ -77,7 +77,13 @@ fn what_is_no_trace_is_refused_by_every_verb() {
         run("text.gnt").refused(&["text.gnt", "89 47 4E 54"]);
         run("flipped.gnt").refused(&["flipped.gnt", "byte"]);
     }
-    folder.gnomon("replay cut.gnt").refused(&["cut.gnt"]);
+    folder
+        .gnomon("replay cut.gnt")
+        .refused(&["FRAM", "byte 400"]);
+    // What lies before a cut is there, and what is lost is told.
+    fs::write(folder.path("short.gnt"), &whole[..whole.len() - 20]).unwrap();
+    let short = folder.gnomon("replay short.gnt").fine();
+    assert!(short.stdout().contains("lost"), "{}", short.stdout());
     folder.gnomon("diff a.gnt text.gnt").refused(&["text.gnt"]);
     folder
         .gnomon("replay a.gnt --frame 3")

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use gnomon_raster::{AccessBatch, AccessObserver, Error, Gpu, GpuConfig, Recording, Wants};
+use gnomon_raster::{
+    AccessBatch, AccessObserver, Error, Gpu, GpuConfig, Recording, SubmitReport, Wants,
+};
 
 use crate::format::v1::TileHash;
 use crate::witness::{Witness, hash_of};
@@ -22,6 +24,17 @@ impl DrawHashes {
     /// # Errors
     /// What the GPU refuses.
     pub fn of(recording: &Recording, config: GpuConfig) -> Result<Self, Error> {
+        Self::measure(recording, config).map(|(hashes, _)| hashes)
+    }
+
+    /// The same, with what the run counted: watching changes no counter.
+    ///
+    /// # Errors
+    /// What the GPU refuses.
+    pub fn measure(
+        recording: &Recording,
+        config: GpuConfig,
+    ) -> Result<(Self, SubmitReport), Error> {
         let mut gpu = Gpu::new(config)?;
         gpu.load(recording)?;
         let draws = recording.list.passes.iter().map(|p| p.draws.len());
@@ -30,8 +43,8 @@ impl DrawHashes {
             witness: Some(&Witness),
             ..Wants::default()
         };
-        gpu.submit_observed(&recording.list, wants, &mut hashes)?;
-        Ok(hashes.done())
+        let report = gpu.submit_observed(&recording.list, wants, &mut hashes)?;
+        Ok((hashes.done(), report))
     }
 
     /// Of each pass, its tiles by draw, column and row, as they are written down.

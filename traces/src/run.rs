@@ -1,13 +1,25 @@
-//! Drawing a frame pass by pass, so that what each pass leaves can be looked at.
+//! Drawing a frame, whole or pass by pass, so that what each pass leaves can be looked at.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use gnomon_raster::{
-    CommandList, Error, Gpu, Recording, RenderPass, SubmitReport, Subresource, TextureId,
+    CommandList, Error, Gpu, GpuConfig, Recording, RenderPass, SubmitReport, Subresource, TextureId,
 };
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::error::TraceError;
+
+/// A new GPU with the textures of `recording`, after `list`.
+pub(crate) fn draw(
+    recording: &Recording,
+    list: &CommandList,
+    config: GpuConfig,
+) -> Result<(Gpu, SubmitReport), Error> {
+    let mut gpu = Gpu::new(config)?;
+    gpu.load(recording)?;
+    let report = gpu.submit(list)?;
+    Ok((gpu, report))
+}
 
 /// Loads `recording` and draws its passes; `after` is called behind each.
 pub(crate) fn draw_passes(

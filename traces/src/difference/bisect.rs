@@ -4,9 +4,11 @@
 use gnomon_raster::{Error, Gpu, GpuConfig, Recording, Subresource, TextureId};
 
 use super::facet::FACETS;
+use super::image::{Aspect, Image};
 use super::minimise::minimise;
 use super::mixture::Mixture;
 use super::state::{Place, StateDifference};
+use crate::run::draw;
 
 /// Which differences may be the cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +46,7 @@ pub struct DifferingPixel {
     pub values: [[u32; 4]; 2],
     texture: TextureId,
     image: Subresource,
+    looked_at: Aspect,
 }
 
 /// Why no cause is found.
@@ -132,10 +135,7 @@ struct Trials {
 
 impl Trials {
     fn run(&self, frame: &Recording) -> Result<Gpu, Error> {
-        let mut gpu = Gpu::new(self.config)?;
-        gpu.load(frame)?;
-        gpu.submit(&frame.list)?;
-        Ok(gpu)
+        draw(frame, &frame.list, self.config).map(|(gpu, _)| gpu)
     }
 
     /// Whether the first frame with `part` of the second has the second's value in `pixel`.
@@ -151,75 +151,37 @@ impl Trials {
         let Ok(gpu) = self.run(&mixed) else {
             return Ok(false);
         };
-        let image = Image::read(&gpu, pixel.texture, pixel.image, pixel.aspect)?;
+        let image = Image::read(&gpu, pixel.texture, pixel.image, pixel.looked_at)?;
         Ok(image.at(pixel.pixel) == pixel.values[1])
-    }
-}
-
-/// An aspect of an image.
-struct Image {
-    width: u32,
-    texels: Vec<[u32; 4]>,
-}
-
-impl Image {
-    fn read(gpu: &Gpu, id: TextureId, image: Subresource, aspect: &str) -> Result<Self, Error> {
-        let texture = gpu.texture(id)?;
-        let wide = |v: u32| [v, 0, 0, 0];
-        let texels = match aspect {
-            "color" => texture.read_raw(image)?,
-            "depth" => texture
-                .read_depth_bits(image)?
-                .into_iter()
-                .map(wide)
-                .collect(),
-            _ => texture
-                .read_stencil(image)?
-                .into_iter()
-                .map(|s| wide(s.into()))
-                .collect(),
-        };
-        let width = (texture.descriptor().size[0] >> image.mip).max(1);
-        Ok(Self { width, texels })
-    }
-
-    fn at(&self, [x, y]: [u32; 2]) -> [u32; 4] {
-        self.texels[(y * self.width + x) as usize]
     }
 }
 
 /// The first pixel that differs between two frames that are done, colour first.
 fn first_differing_pixel(a: &Gpu, b: &Gpu) -> Result<DifferingPixel, BisectError> {
-    for aspect in ["color", "depth", "stencil"] {
+    for aspect in [Aspect::Color, Aspect::Depth, Aspect::Stencil] {
         for id in a.texture_ids() {
             let descriptor = a.texture(id)?.descriptor();
-            if descriptor.format.is_depth_stencil() == (aspect == "color") {
+            if descriptor.format.is_depth_stencil() == (aspect == Aspect::Color) {
                 continue;
             }
             for image in descriptor.images() {
-                let images = [
+                let [a, b] = [
                     Image::read(a, id, image, aspect)?,
                     Image::read(b, id, image, aspect)?,
                 ];
-                if let Some((pixel, values)) = first_of(&images) {
-                    let label = descriptor.label.clone();
+                if let Some((pixel, values)) = a.differing(&b).next() {
                     return Ok(DifferingPixel {
-                        label,
-                        aspect,
+                        label: descriptor.label.clone(),
+                        aspect: aspect.name(),
                         pixel,
                         values,
                         texture: id,
                         image,
+                        looked_at: aspect,
                     });
                 }
             }
         }
     }
     Err(BisectError::Equal)
-}
-
-fn first_of([a, b]: &[Image; 2]) -> Option<([u32; 2], [[u32; 4]; 2])> {
-    let at = a.texels.iter().zip(&b.texels).position(|(x, y)| x != y)?;
-    let pixel = [at as u32 % a.width, at as u32 / a.width];
-    Some((pixel, [a.texels[at], b.texels[at]]))
 }

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use gnomon_raster::{CommandList, Error, Gpu, GpuConfig, Recording, Subresource, TextureId};
+use gnomon_raster::{Error, Gpu, GpuConfig, Recording, RenderPass};
 
 use super::align::Pair;
+use super::image::{Aspect, Image};
 use super::state::Alignment;
 use crate::hashes::DrawHashes;
 use crate::prefix::until;
+use crate::run::draw;
 
 /// Side of a tile of [`DrawHashes`] in pixels.
 const TILE: u32 = 64;
@@ -115,67 +117,29 @@ fn differing_tile(hashes: [&DrawHashes; 2], place: Place) -> Option<[u16; 2]> {
 /// A GPU as it is right after a draw, and the pass that the draw is in.
 struct After<'a> {
     gpu: Gpu,
-    frame: &'a Recording,
-    pass: usize,
+    pass: &'a RenderPass,
 }
 
 fn state_after(frame: &Recording, at: [usize; 2], config: GpuConfig) -> Result<After<'_>, Error> {
-    let mut gpu = Gpu::new(config)?;
-    gpu.load(frame)?;
-    let list: CommandList = until(&frame.list, at);
-    gpu.submit(&list)?;
-    Ok(After {
-        gpu,
-        frame,
-        pass: at[0],
-    })
-}
-
-/// An aspect of an attachment, in rows from the top.
-struct Aspect {
-    label: String,
-    name: &'static str,
-    width: u32,
-    texels: Vec<[u32; 4]>,
+    let (gpu, _) = draw(frame, &until(&frame.list, at), config)?;
+    let pass = &frame.list.passes[at[0]];
+    Ok(After { gpu, pass })
 }
 
 impl After<'_> {
-    fn aspects(&self) -> Result<Vec<Aspect>, Error> {
-        let pass = &self.frame.list.passes[self.pass];
-        let mut aspects = Vec::new();
-        if let Some(a) = &pass.depth_stencil {
-            let depth = self
-                .gpu
-                .texture(a.texture)?
-                .read_depth_bits(a.subresource)?;
-            let stencil = self.gpu.texture(a.texture)?.read_stencil(a.subresource)?;
-            let wide = |v: u32| [v, 0, 0, 0];
-            let depth = depth.into_iter().map(wide).collect();
-            let stencil = stencil.into_iter().map(|s| wide(s.into())).collect();
-            aspects.push(self.aspect(a.texture, a.subresource, "depth", depth)?);
-            aspects.push(self.aspect(a.texture, a.subresource, "stencil", stencil)?);
-        }
-        for a in &pass.color {
-            let texels = self.gpu.texture(a.texture)?.read_raw(a.subresource)?;
-            aspects.push(self.aspect(a.texture, a.subresource, "color", texels)?);
-        }
-        Ok(aspects)
-    }
-
-    fn aspect(
-        &self,
-        texture: TextureId,
-        image: Subresource,
-        name: &'static str,
-        texels: Vec<[u32; 4]>,
-    ) -> Result<Aspect, Error> {
-        let descriptor = self.gpu.texture(texture)?.descriptor();
-        Ok(Aspect {
-            label: descriptor.label.clone(),
-            name,
-            width: (descriptor.size[0] >> image.mip).max(1),
-            texels,
-        })
+    /// Depth, stencil and colours of the pass, with their textures' labels.
+    fn images(&self) -> Result<Vec<(String, Aspect, Image)>, Error> {
+        let depth = self.pass.depth_stencil.iter();
+        let depth = depth.flat_map(|a| {
+            [Aspect::Depth, Aspect::Stencil].map(|aspect| (a.texture, a.subresource, aspect))
+        });
+        let color = self.pass.color.iter();
+        let color = color.map(|a| (a.texture, a.subresource, Aspect::Color));
+        let read = |(id, image, aspect)| {
+            let label = self.gpu.texture(id)?.descriptor().label.clone();
+            Ok((label, aspect, Image::read(&self.gpu, id, image, aspect)?))
+        };
+        depth.chain(color).map(read).collect()
     }
 }
 
@@ -184,24 +148,19 @@ fn differing_attachments(
     b: &After<'_>,
     tile: [u16; 2],
 ) -> Result<Vec<AttachmentDifference>, Error> {
-    let pairs = a.aspects()?.into_iter().zip(b.aspects()?);
-    Ok(pairs
-        .filter_map(|(a, b)| differing_pixels(&a, &b, tile))
-        .collect())
-}
-
-fn differing_pixels(a: &Aspect, b: &Aspect, tile: [u16; 2]) -> Option<AttachmentDifference> {
     let in_tile = |pixel: [u32; 2]| pixel.map(|p| p / TILE) == tile.map(u32::from);
-    let place = |at: usize| [at as u32 % a.width, at as u32 / a.width];
-    let pairs = a.texels.iter().zip(&b.texels).enumerate();
-    let differing = pairs.filter(|(at, (x, y))| x != y && in_tile(place(*at)));
-    let mut differing = differing.peekable();
-    let &(at, (x, y)) = differing.peek()?;
-    Some(AttachmentDifference {
-        label: a.label.clone(),
-        aspect: a.name,
-        first: place(at),
-        values: [*x, *y],
-        pixels: differing.count(),
-    })
+    let mut found = Vec::new();
+    for ((label, aspect, a), (_, _, b)) in a.images()?.into_iter().zip(b.images()?) {
+        let mut differing = a.differing(&b).filter(|(pixel, _)| in_tile(*pixel));
+        if let Some((first, values)) = differing.next() {
+            found.push(AttachmentDifference {
+                label,
+                aspect: aspect.name(),
+                pixels: 1 + differing.count(),
+                first,
+                values,
+            });
+        }
+    }
+    Ok(found)
 }

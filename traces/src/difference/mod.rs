@@ -5,6 +5,7 @@ mod align;
 mod bisect;
 mod effect;
 mod facet;
+mod image;
 mod minimise;
 mod mixture;
 mod state;

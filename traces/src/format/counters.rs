@@ -50,57 +50,55 @@ fn fill(numbers: &[u64], visit: impl FnOnce(&mut dyn FnMut(&mut u64))) -> Result
 
 type Visitor<'a> = &'a mut dyn FnMut(&mut u64);
 
+/// Visits all fields of a struct in the order given. It is taken apart without `..`: a
+/// field that is left out does not compile.
+macro_rules! visit_fields {
+    ($of:expr, $f:expr, $type:ident { $($field:ident),+ $(,)? }) => {
+        let $type { $($field),+ } = $of;
+        [$($field),+].into_iter().for_each(&mut *$f);
+    };
+}
+
 fn visit(counters: &mut Counters, f: Visitor<'_>) {
-    let PrimitiveCounters {
-        vertex_shader_invocations,
-        input,
-        non_finite,
-        frustum_culled,
-        clipped,
-        degenerate,
-        face_culled,
-        rasterized,
-        steep_depth_planes,
-    } = &mut counters.primitives;
-    let primitives = [
-        vertex_shader_invocations,
-        input,
-        non_finite,
-        frustum_culled,
-        clipped,
-        degenerate,
-        face_culled,
-        rasterized,
-        steep_depth_planes,
-    ];
-    primitives.into_iter().for_each(&mut *f);
-    let FragmentCounters {
-        generated,
-        hiz_killed,
-        bounds_failed,
-        stencil_failed,
-        depth_failed,
-        discarded,
-        written,
-    } = &mut counters.fragments;
-    let ends = [
-        generated,
-        hiz_killed,
-        bounds_failed,
-        stencil_failed,
-        depth_failed,
-        discarded,
-        written,
-    ];
-    ends.into_iter().for_each(&mut *f);
+    visit_fields!(
+        &mut counters.primitives,
+        f,
+        PrimitiveCounters {
+            vertex_shader_invocations,
+            input,
+            non_finite,
+            frustum_culled,
+            clipped,
+            degenerate,
+            face_culled,
+            rasterized,
+            steep_depth_planes,
+        }
+    );
+    visit_fields!(
+        &mut counters.fragments,
+        f,
+        FragmentCounters {
+            generated,
+            hiz_killed,
+            bounds_failed,
+            stencil_failed,
+            depth_failed,
+            discarded,
+            written,
+        }
+    );
     f(&mut counters.fragment_shader_invocations);
     counters.shader_counts.iter_mut().for_each(&mut *f);
-    let TileCounters {
-        tested,
-        culled,
-        accepted,
-    } = &mut counters.tiles;
-    [tested, culled, accepted].into_iter().for_each(&mut *f);
+    visit_fields!(
+        &mut counters.tiles,
+        f,
+        TileCounters {
+            tested,
+            culled,
+            accepted
+        }
+    );
     visit_events(&mut counters.events, f);
     visit_clients(&mut counters.traffic, f);
 }
@@ -142,14 +140,16 @@ fn visit_clients(clients: &mut ClientTraffic, f: Visitor<'_>) {
 }
 
 fn visit_traffic(traffic: &mut Traffic, f: Visitor<'_>) {
-    let Traffic {
-        read_accesses,
-        read_bytes,
-        write_accesses,
-        write_bytes,
-    } = traffic;
-    let all = [read_accesses, read_bytes, write_accesses, write_bytes];
-    all.into_iter().for_each(f);
+    visit_fields!(
+        traffic,
+        f,
+        Traffic {
+            read_accesses,
+            read_bytes,
+            write_accesses,
+            write_bytes
+        }
+    );
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Compares two frames: how they were made, as data, in what they draw, in what they count.
 
-use gnomon_raster::{Gpu, GpuConfig, Recording, SubmitReport};
+use gnomon_raster::{GpuConfig, SubmitReport};
 use gnomon_traces::{
     DrawHashes, FirstDifference, StateDifference, compare_states, first_difference,
 };
@@ -49,23 +49,14 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), CliError> {
 
 fn compare(inputs: &Inputs, config: GpuConfig) -> Result<Differences, CliError> {
     let frames = inputs.frames();
-    let hashes = [
-        DrawHashes::of(frames[0], config)?,
-        DrawHashes::of(frames[1], config)?,
-    ];
-    let reports = [totals(frames[0], config)?, totals(frames[1], config)?];
+    let (a, report_a) = DrawHashes::measure(frames[0], config)?;
+    let (b, report_b) = DrawHashes::measure(frames[1], config)?;
     Ok(Differences {
         made: differing_settings(inputs),
         states: compare_states(frames[0], frames[1]),
-        first: first_difference(frames, [&hashes[0], &hashes[1]], config)?,
-        counters: differing_figures(&reports),
+        first: first_difference(frames, [&a, &b], config)?,
+        counters: differing_figures(&[figures(&report_a), figures(&report_b)]),
     })
-}
-
-fn totals(frame: &Recording, config: GpuConfig) -> Result<Vec<(String, u64)>, CliError> {
-    let mut gpu = Gpu::new(config)?;
-    gpu.load(frame)?;
-    Ok(figures(&gpu.submit(&frame.list)?))
 }
 
 /// Fragments by their end, and bytes by client, of a whole frame.

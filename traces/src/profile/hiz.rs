@@ -327,3 +327,37 @@ fn fail_operations(faces: &[StencilFaceState]) -> Result<(), DisabledReason> {
 fn depends_on_depth(face: &StencilFaceState) -> bool {
     face.write_mask != 0 && face.depth_fail_op != face.pass_op
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All depths of the one range against all of the other, for every comparison: what is
+    /// said of ranges is said where it holds for each pair, and nowhere else.
+    #[test]
+    fn ranges_say_what_all_their_depths_say() {
+        let ranges = || (0..4u32).flat_map(|low| (low..4).map(move |high| [low, high]));
+        for c in CompareFunction::ALL {
+            if matches!(c, CompareFunction::Never | CompareFunction::Always) {
+                continue;
+            }
+            for ([a, b], [min, max]) in ranges().flat_map(|x| ranges().map(move |y| (x, y))) {
+                let each = || (a..=b).flat_map(|f| (min..=max).map(move |s| c.test(f, s)));
+                let told = outcome(c, [a, b], [min, max]);
+                let truth = (each().all(|p| p), each().all(|p| !p));
+                assert_eq!(told, truth, "{c:?} {a}..{b} {min}..{max}");
+                // One end is kept: of Equal the largest only, of NotEqual nothing follows.
+                let known = match c {
+                    CompareFunction::Equal => a > max,
+                    CompareFunction::NotEqual => false,
+                    _ => truth.1,
+                };
+                assert_eq!(
+                    fails(c, [a, b], [min, max]),
+                    known,
+                    "{c:?} {a}..{b} {min}..{max}"
+                );
+            }
+        }
+    }
+}

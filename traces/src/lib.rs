@@ -35,4 +35,4 @@ pub use replay::{DrawDifference, ReplayDepth, ReplayDifference, Replayed, replay
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
 pub use trace::{FrameCounters, SectionNote, ShaderNote, Trace};
 pub use trim::{Keep, trim};
-pub use witness::Witness;
+pub use witness::{Contents, Witness};

@@ -108,10 +108,11 @@ pub fn replay(
         return Err(trace.missing(HASH, frame));
     }
     let (mut attachments, mut difference) = (0, None);
+    let mut ends = run::EndHashes::default();
     let (gpu, report) = run::guarded(frame, || {
         let mut gpu = Gpu::new(config)?;
         let report = run::draw_passes(&mut gpu, &recording, |gpu, number, pass| {
-            let now = run::end_hashes(gpu, pass)?;
+            let now = ends.of(gpu, pass)?;
             attachments += now.len();
             if difference.is_none() {
                 difference = end_difference(&recording, number, &hashes, &now);

@@ -4,7 +4,7 @@
 //! depth-stencil image is its depth plane (the 24-bit integer in 3 bytes, or the
 //! float's 4), then its stencil plane.
 
-use super::layout::Layout;
+use super::layout::{BLOCK, Layout};
 use super::plane::{ColorBlocks, DepthPlane, Plane};
 use super::resource::{Subresource, Texture, image_size, pixels};
 use super::{HIZ_STALE, TextureDescriptor};
@@ -65,13 +65,23 @@ impl Texture {
         let mut bytes = Vec::new();
         let what = || format!("a copy of the texels of `{}`", self.desc.label);
         reserve(&mut bytes, packed_len(&self.desc, s)?, what)?;
+        self.visit_packed(s, |row| bytes.extend_from_slice(row))?;
+        Ok(bytes)
+    }
+
+    /// Shows `visit` what [`Texture::read_packed`] gives, row by row.
+    ///
+    /// # Errors
+    /// There is no such image.
+    pub fn visit_packed(&self, s: Subresource, mut visit: impl FnMut(&[u8])) -> Result<(), Error> {
+        packed_len(&self.desc, s)?;
         let layout = &self.layouts[s.mip as usize];
         match &self.planes[s.mip as usize][s.layer as usize] {
-            Plane::Color(blocks) => read_color(blocks, self.desc.format, layout, &mut bytes),
-            Plane::Depth(plane) => read_depth(plane, self.desc.format, layout, &mut bytes),
+            Plane::Color(blocks) => read_color(blocks, layout, &mut visit),
+            Plane::Depth(plane) => read_depth(plane, self.desc.format, layout, &mut visit),
             Plane::Lent => unreachable!("only while a command list is executed"),
         }
-        Ok(bytes)
+        Ok(())
     }
 
     /// Replaces an image by bytes that [`Texture::read_packed`] gave: the same stored
@@ -119,21 +129,98 @@ pub(crate) fn check_packed(
     }
 }
 
-fn read_color(blocks: &ColorBlocks, format: Format, layout: &Layout, to: &mut Vec<u8>) {
-    for (x, y) in pixels(layout) {
-        pack(format, blocks.get(format, layout.locate(x, y)), to);
+fn read_color(blocks: &ColorBlocks, layout: &Layout, to: &mut impl FnMut(&[u8])) {
+    match blocks {
+        ColorBlocks::B8(v) => read_rows(layout, to, |b, y, to| {
+            copy(row(&v[b].0, y), to, u8::to_le_bytes);
+        }),
+        ColorBlocks::B16(v) => read_rows(layout, to, |b, y, to| {
+            copy(row(&v[b].0, y), to, u16::to_le_bytes);
+        }),
+        ColorBlocks::B32(v) => read_rows(layout, to, |b, y, to| {
+            copy(row(&v[b].0, y), to, u32::to_le_bytes);
+        }),
+        ColorBlocks::B16x4(v) => read_rows(layout, to, |b, y, to: &mut Row<[u8; 8]>| {
+            for (c, channel) in v[b].0.iter().enumerate() {
+                interleave(row(channel, y), to, 2 * c, u16::to_le_bytes);
+            }
+        }),
+        ColorBlocks::B32x4(v) => read_rows(layout, to, |b, y, to: &mut Row<[u8; 16]>| {
+            for (c, channel) in v[b].0.iter().enumerate() {
+                interleave(row(channel, y), to, 4 * c, u32::to_le_bytes);
+            }
+        }),
     }
 }
 
-fn read_depth(plane: &DepthPlane, format: Format, layout: &Layout, to: &mut Vec<u8>) {
-    let bytes = format.bytes() as usize;
-    for (x, y) in pixels(layout) {
-        let (block, pixel) = layout.locate(x, y);
-        to.extend_from_slice(&plane.depth[block].0[pixel].to_le_bytes()[..bytes]);
+fn read_depth(plane: &DepthPlane, format: Format, layout: &Layout, to: &mut impl FnMut(&[u8])) {
+    let depths = |b: usize, y: usize| row(&plane.depth[b].0, y);
+    match format.bytes() {
+        3 => read_rows(layout, to, |b, y, to: &mut Row<[u8; 3]>| {
+            for (to, depth) in to.iter_mut().zip(depths(b, y)) {
+                let [low, middle, high, _] = depth.to_le_bytes();
+                *to = [low, middle, high];
+            }
+        }),
+        _ => read_rows(layout, to, |b, y, to| {
+            copy(depths(b, y), to, u32::to_le_bytes)
+        }),
     }
-    for (x, y) in pixels(layout) {
-        let (block, pixel) = layout.locate(x, y);
-        to.push(plane.stencil[block].0[pixel]);
+    read_rows(layout, to, |b, y, to| {
+        copy(row(&plane.stencil[b].0, y), to, u8::to_le_bytes);
+    });
+}
+
+/// Pixels of a row of a block.
+type Row<T> = [T; BLOCK as usize];
+
+/// Row `y` of a block.
+#[inline(always)]
+fn row<T>(block: &[T; 64], y: usize) -> &Row<T> {
+    &block.as_chunks().0[y]
+}
+
+/// Puts the bytes of each value. A loop: `array::map` stays a call for each.
+#[inline(always)]
+fn copy<T: Copy, const N: usize>(
+    row: &Row<T>,
+    to: &mut Row<[u8; N]>,
+    bytes: impl Fn(T) -> [u8; N],
+) {
+    for (to, value) in to.iter_mut().zip(row) {
+        *to = bytes(*value);
+    }
+}
+
+/// Puts the bytes of each value of a channel at byte `at` of its texel.
+#[inline(always)]
+fn interleave<T: Copy, const N: usize, const TEXEL: usize>(
+    row: &Row<T>,
+    to: &mut Row<[u8; TEXEL]>,
+    at: usize,
+    bytes: impl Fn(T) -> [u8; N],
+) {
+    for (to, value) in to.iter_mut().zip(row) {
+        to[at..at + N].copy_from_slice(&bytes(*value));
+    }
+}
+
+/// Shows the texels of an image row by row; `texels` puts the bytes of those in a row of a
+/// block.
+#[inline(always)]
+fn read_rows<const N: usize>(
+    layout: &Layout,
+    visit: &mut impl FnMut(&[u8]),
+    texels: impl Fn(usize, usize, &mut Row<[u8; N]>),
+) {
+    let mut row = vec![[0; N]; layout.width.next_multiple_of(BLOCK) as usize];
+    for y in 0..layout.height {
+        let blocks = row.as_chunks_mut().0;
+        for (column, to) in blocks.iter_mut().enumerate() {
+            let block = layout.block_index(column as u32, y / BLOCK);
+            texels(block, (y % BLOCK) as usize, to);
+        }
+        visit(row[..layout.width as usize].as_flattened());
     }
 }
 

@@ -26,16 +26,14 @@ impl BlockWitness for Witness {
             depth_stencil_class(block.level, depth, stencil)
         });
         let mut classes = u64::from(depth_class);
-        for (i, (color, format)) in block.color.iter().zip(block.formats).enumerate() {
-            if i < COLORS {
-                let color = match (color, format) {
-                    (ColorBlock::B32(words), Format::Rgba8Unorm) => {
-                        class(block.level, words, COLOR_LEVELS)
-                    }
-                    _ => RAW,
-                };
-                classes |= u64::from(color) << (2 * (i + 1));
-            }
+        for i in 0..block.color.len().min(COLORS) {
+            let color = match (block.color[i], block.formats[i]) {
+                (ColorBlock::B32(words), Format::Rgba8Unorm) => {
+                    class(block.level, words, COLOR_LEVELS)
+                }
+                _ => RAW,
+            };
+            classes |= u64::from(color) << (2 * (i + 1));
         }
         classes | SEEN
     }
@@ -104,20 +102,21 @@ struct Bytes<const MOST: usize> {
 }
 
 impl<const MOST: usize> Bytes<MOST> {
-    #[inline]
+    #[inline(always)]
     fn put<T: Copy, const N: usize>(&mut self, words: &[T; 64], bytes: impl Fn(T) -> [u8; N]) {
         let to = &mut self.buffer[self.length..self.length + 64 * N];
         self.length += 64 * N;
+        // Plain loops: what iterators call would be called for each word.
         let to = to.as_chunks_mut::<N>().0;
-        if self.inside == u64::MAX {
-            for (to, word) in to.iter_mut().zip(words) {
-                *to = bytes(*word);
-            }
-            return;
+        let to = &mut to[..64];
+        for i in 0..64 {
+            to[i] = bytes(words[i]);
         }
-        for (i, (to, word)) in to.iter_mut().zip(words).enumerate() {
-            if self.inside >> i & 1 != 0 {
-                *to = bytes(*word);
+        if self.inside != u64::MAX {
+            for i in 0..64 {
+                if self.inside >> i & 1 == 0 {
+                    to[i] = [0; N];
+                }
             }
         }
     }

@@ -58,7 +58,8 @@ impl<'a> Listener<'a> {
         let batch = &mut self.batch;
         batch.clear();
         gathered.for_each(|g| batch.take(g, parallel));
-        if batch.blocks.is_empty() {
+        // What draws left can be told behind their last events.
+        if batch.blocks.is_empty() && batch.left.is_empty() {
             return;
         }
         batch.sort(parallel);
@@ -123,8 +124,10 @@ impl Batch {
     fn sort(&mut self, parallel: bool) {
         let order = self.order.of(&self.turns);
         self.ordered.clear();
-        let events = order.iter().map(|&i| self.blocks[i as usize]);
-        self.ordered.extend(events);
+        self.ordered.reserve(order.len());
+        for &event in order {
+            self.ordered.push(self.blocks[event as usize]);
+        }
         core::mem::swap(&mut self.blocks, &mut self.ordered);
         self.left
             .sort_unstable_by_key(|l| (l.draw, l.block[1], l.block[0]));

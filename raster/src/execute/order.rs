@@ -17,8 +17,11 @@ impl Order {
     /// Numbers of the events that have these `turns`, first to last: a counting sort by
     /// triangle, of which there are about as many as events, then each triangle's few.
     pub(super) fn of(&mut self, turns: &[Turn]) -> &[u32] {
-        let triangles = turns.iter().map(|t| t.triangle + 1).max().unwrap_or(0);
-        self.count(turns, triangles as usize);
+        let mut triangles = 0;
+        for turn in turns {
+            triangles = triangles.max(turn.triangle as usize + 1);
+        }
+        self.count(turns, triangles);
         self.events.clear();
         self.events.resize(turns.len(), 0);
         for (number, turn) in turns.iter().enumerate() {
@@ -35,7 +38,10 @@ impl Order {
             start = end as usize;
         }
         self.order.clear();
-        self.order.extend(self.events.iter().map(|e| *e as u32));
+        self.order.reserve(self.events.len());
+        for &event in &self.events {
+            self.order.push(event as u32);
+        }
         &self.order
     }
 

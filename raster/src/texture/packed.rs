@@ -129,98 +129,101 @@ pub(crate) fn check_packed(
     }
 }
 
+// Plain loops over numbers, and closures that are inlined without fail: iterators and
+// `copy_from_slice` can stay calls for each texel.
+
 fn read_color(blocks: &ColorBlocks, layout: &Layout, to: &mut impl FnMut(&[u8])) {
     match blocks {
-        ColorBlocks::B8(v) => read_rows(layout, to, |b, y, to| {
-            copy(row(&v[b].0, y), to, u8::to_le_bytes);
-        }),
-        ColorBlocks::B16(v) => read_rows(layout, to, |b, y, to| {
-            copy(row(&v[b].0, y), to, u16::to_le_bytes);
-        }),
-        ColorBlocks::B32(v) => read_rows(layout, to, |b, y, to| {
-            copy(row(&v[b].0, y), to, u32::to_le_bytes);
-        }),
-        ColorBlocks::B16x4(v) => read_rows(layout, to, |b, y, to: &mut Row<[u8; 8]>| {
-            for (c, channel) in v[b].0.iter().enumerate() {
-                interleave(row(channel, y), to, 2 * c, u16::to_le_bytes);
-            }
-        }),
-        ColorBlocks::B32x4(v) => read_rows(layout, to, |b, y, to: &mut Row<[u8; 16]>| {
-            for (c, channel) in v[b].0.iter().enumerate() {
-                interleave(row(channel, y), to, 4 * c, u32::to_le_bytes);
-            }
-        }),
+        ColorBlocks::B8(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| v[b].0[i].to_le_bytes(),
+        ),
+        ColorBlocks::B16(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| v[b].0[i].to_le_bytes(),
+        ),
+        ColorBlocks::B32(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| v[b].0[i].to_le_bytes(),
+        ),
+        ColorBlocks::B16x4(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| {
+                let c = &v[b].0;
+                let [c0, c1, c2, c3] = [c[0][i], c[1][i], c[2][i], c[3][i]];
+                let low = u64::from(c0) | u64::from(c1) << 16;
+                (low | u64::from(c2) << 32 | u64::from(c3) << 48).to_le_bytes()
+            },
+        ),
+        ColorBlocks::B32x4(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| {
+                let c = &v[b].0;
+                let [c0, c1, c2, c3] = [c[0][i], c[1][i], c[2][i], c[3][i]];
+                let low = u128::from(c0) | u128::from(c1) << 32;
+                (low | u128::from(c2) << 64 | u128::from(c3) << 96).to_le_bytes()
+            },
+        ),
     }
 }
 
 fn read_depth(plane: &DepthPlane, format: Format, layout: &Layout, to: &mut impl FnMut(&[u8])) {
-    let depths = |b: usize, y: usize| row(&plane.depth[b].0, y);
     match format.bytes() {
-        3 => read_rows(layout, to, |b, y, to: &mut Row<[u8; 3]>| {
-            for (to, depth) in to.iter_mut().zip(depths(b, y)) {
-                let [low, middle, high, _] = depth.to_le_bytes();
-                *to = [low, middle, high];
-            }
-        }),
-        _ => read_rows(layout, to, |b, y, to| {
-            copy(depths(b, y), to, u32::to_le_bytes)
-        }),
+        3 => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| {
+                let [low, middle, high, _] = plane.depth[b].0[i].to_le_bytes();
+                [low, middle, high]
+            },
+        ),
+        _ => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| plane.depth[b].0[i].to_le_bytes(),
+        ),
     }
-    read_rows(layout, to, |b, y, to| {
-        copy(row(&plane.stencil[b].0, y), to, u8::to_le_bytes);
-    });
+    read_rows(
+        layout,
+        to,
+        #[inline(always)]
+        |b, i| [plane.stencil[b].0[i]],
+    );
 }
 
-/// Pixels of a row of a block.
-type Row<T> = [T; BLOCK as usize];
-
-/// Row `y` of a block.
-#[inline(always)]
-fn row<T>(block: &[T; 64], y: usize) -> &Row<T> {
-    &block.as_chunks().0[y]
-}
-
-/// Puts the bytes of each value. A loop: `array::map` stays a call for each.
-#[inline(always)]
-fn copy<T: Copy, const N: usize>(
-    row: &Row<T>,
-    to: &mut Row<[u8; N]>,
-    bytes: impl Fn(T) -> [u8; N],
-) {
-    for (to, value) in to.iter_mut().zip(row) {
-        *to = bytes(*value);
-    }
-}
-
-/// Puts the bytes of each value of a channel at byte `at` of its texel.
-#[inline(always)]
-fn interleave<T: Copy, const N: usize, const TEXEL: usize>(
-    row: &Row<T>,
-    to: &mut Row<[u8; TEXEL]>,
-    at: usize,
-    bytes: impl Fn(T) -> [u8; N],
-) {
-    for (to, value) in to.iter_mut().zip(row) {
-        to[at..at + N].copy_from_slice(&bytes(*value));
-    }
-}
-
-/// Shows the texels of an image row by row; `texels` puts the bytes of those in a row of a
-/// block.
+/// Shows the texels of an image row by row; `texel` gives the bytes of a pixel of a block.
 #[inline(always)]
 fn read_rows<const N: usize>(
     layout: &Layout,
     visit: &mut impl FnMut(&[u8]),
-    texels: impl Fn(usize, usize, &mut Row<[u8; N]>),
+    texel: impl Fn(usize, usize) -> [u8; N],
 ) {
-    let mut row = vec![[0; N]; layout.width.next_multiple_of(BLOCK) as usize];
+    const SIDE: usize = BLOCK as usize;
+    let blocks = layout.width.div_ceil(BLOCK) as usize;
+    let mut row = vec![[[0; N]; SIDE]; blocks];
     for y in 0..layout.height {
-        let blocks = row.as_chunks_mut().0;
-        for (column, to) in blocks.iter_mut().enumerate() {
-            let block = layout.block_index(column as u32, y / BLOCK);
-            texels(block, (y % BLOCK) as usize, to);
+        let first = SIDE * (y as usize % SIDE);
+        for x in 0..blocks {
+            let block = layout.block_index(x as u32, y / BLOCK);
+            let to = &mut row[x];
+            for i in 0..SIDE {
+                to[i] = texel(block, first + i);
+            }
         }
-        visit(row[..layout.width as usize].as_flattened());
+        let row = &row.as_flattened()[..layout.width as usize];
+        visit(row.as_flattened());
     }
 }
 

@@ -99,9 +99,11 @@ impl EventWriter {
         for k in 0..2 {
             c.difference(3 + k, last.block[k].into(), block.block[k].into());
         }
-        for (k, now) in [block.span, block.stored].into_iter().enumerate() {
-            c.difference(DEPTHS + 2 * k, last.depths[k].into(), now[0].into());
-            c.difference(DEPTHS + 2 * k + 1, now[0].into(), now[1].into());
+        let depths = [block.span, block.stored];
+        for k in 0..2 {
+            let (least, greatest) = (u64::from(depths[k][0]), u64::from(depths[k][1]));
+            c.difference(DEPTHS + 2 * k, last.depths[k].into(), least);
+            c.difference(DEPTHS + 2 * k + 1, least, greatest);
         }
         self.last = Place {
             draw: block.draw,
@@ -112,38 +114,25 @@ impl EventWriter {
         self.code(block);
     }
 
-    /// The code, and the masks that it does not tell.
+    /// The code, and the masks that it does not tell. Plain loops: what iterators call
+    /// would be called for each mask.
     fn code(&mut self, b: &BlockAccess) {
         let c = &mut self.columns;
         let (covered, written) = (b.covered, b.written());
-        let flags = [
-            (covered == u64::MAX, FULL),
-            (b.ended.hiz, HIZ),
-            (b.front, FRONT),
-            (b.hiz_read, HIZ_READ),
-            (b.hiz_write, HIZ_WRITE),
-            (b.witness != 0, WITNESSED),
-        ];
-        let mut code: u64 = flags.iter().map(|(on, bit)| u64::from(*on) * bit).sum();
+        let mut code = u64::from(covered == u64::MAX) * FULL
+            | u64::from(b.ended.hiz) * HIZ
+            | u64::from(b.front) * FRONT
+            | u64::from(b.hiz_read) * HIZ_READ
+            | u64::from(b.hiz_write) * HIZ_WRITE
+            | u64::from(b.witness != 0) * WITNESSED;
         if covered != u64::MAX {
             c.mask(OTHERS, covered);
         }
-        let e = &b.ended;
-        let fixed = [
-            e.bounds,
-            e.stencil,
-            e.depth,
-            e.discarded,
-            b.z_read,
-            b.z_write,
-            b.stencil_read,
-            b.stencil_write,
-        ];
-        let colors = b.color_read.iter().chain(&b.color_write);
-        for (i, mask) in fixed.iter().chain(colors).enumerate() {
-            let kind = kind(*mask, covered, written, i >= ENDS);
+        let masks = masks_of(b);
+        for i in 0..MASKS {
+            let kind = kind(masks[i], covered, written, i >= ENDS);
             if kind == OTHER {
-                c.mask(OTHERS, *mask);
+                c.mask(OTHERS, masks[i]);
             }
             code |= kind << (2 * i);
         }
@@ -160,7 +149,34 @@ impl EventWriter {
     }
 }
 
+/// The masks as [`masks`] orders them.
+#[inline]
+fn masks_of(b: &BlockAccess) -> [u64; MASKS] {
+    let [r0, r1, r2, r3] = b.color_read;
+    let [w0, w1, w2, w3] = b.color_write;
+    let e = &b.ended;
+    [
+        e.bounds,
+        e.stencil,
+        e.depth,
+        e.discarded,
+        b.z_read,
+        b.z_write,
+        b.stencil_read,
+        b.stencil_write,
+        r0,
+        r1,
+        r2,
+        r3,
+        w0,
+        w1,
+        w2,
+        w3,
+    ]
+}
+
 /// A mask's two bits of the code.
+#[inline]
 fn kind(mask: u64, covered: u64, written: u64, may_be_written: bool) -> u64 {
     match mask {
         0 => 0,

@@ -43,6 +43,8 @@ pub(crate) struct Case {
     pub(crate) layers: Vec<f32>,
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) textured: bool,
+    /// Shaders may discard, so that they run before the depth test.
+    pub(crate) discards: bool,
     pub(crate) truncated: bool,
     pub(crate) blended: bool,
 }
@@ -59,6 +61,7 @@ impl Case {
             layers: vec![0.0],
             vertices: Vec::new(),
             textured: false,
+            discards: false,
             truncated: false,
             blended: false,
         }
@@ -162,7 +165,9 @@ impl Case {
 
     fn fragment(&self) -> FragmentStage {
         if self.textured {
-            return FragmentStage::from(Textured);
+            return FragmentStage::from(Textured {
+                discards: self.discards,
+            });
         }
         let truncated = self.truncated;
         per_fragment(FragmentOutputs::default(), move |f| {
@@ -250,12 +255,15 @@ impl AccessObserver for Tally {
     }
 }
 
-struct Textured;
+struct Textured {
+    discards: bool,
+}
 
 impl FragmentShader for Textured {
     fn outputs(&self) -> FragmentOutputs {
         FragmentOutputs {
             textures: 1,
+            discards: self.discards,
             ..FragmentOutputs::default()
         }
     }

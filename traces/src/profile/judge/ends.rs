@@ -1,5 +1,7 @@
 //! Ends of passes and of the frame: clears, loads, stores, the display.
 
+use gnomon_raster::TextureId;
+
 use super::Judge;
 use super::PENDING;
 use crate::profile::attachments::{Attachment, samples};
@@ -32,23 +34,32 @@ impl Judge {
         }
     }
 
-    /// Lines of attachments that the pass samples are written back before it.
+    /// Lines of attachments that the pass samples are written back before it, if they were
+    /// drawn to since somebody sampled them.
     fn flush_sampled(&mut self, pass: usize) {
         let by = Some(self.plans[pass].first_row);
-        for earlier in 0..pass {
-            for a in self.plans[earlier].attachments.iter().flatten() {
-                if samples(&self.shape.passes[pass], a.texture) {
-                    let range = self.images.texture_lines(a.texture);
-                    let lines = &mut self.images.lines;
-                    self.zs.flush(lines, &mut self.ledger, range.clone(), by);
-                    self.color.flush(lines, &mut self.ledger, range.clone(), by);
-                    // What was drawn is not what texture caches hold.
-                    self.texture
-                        .iter_mut()
-                        .for_each(|t| t.forget(range.clone()));
-                }
-            }
+        for texture in self.drawn_and_sampled(pass) {
+            let range = self.images.texture_lines(texture);
+            let lines = &mut self.images.lines;
+            self.zs.flush(lines, &mut self.ledger, range.clone(), by);
+            self.color.flush(lines, &mut self.ledger, range.clone(), by);
+            // What was drawn is not what texture caches hold.
+            self.texture
+                .iter_mut()
+                .for_each(|t| t.forget(range.clone()));
+            self.drawn[texture.index()] = false;
         }
+        for a in self.plans[pass].attachments.iter().flatten() {
+            self.drawn[a.texture.index()] = true;
+        }
+    }
+
+    fn drawn_and_sampled(&self, pass: usize) -> Vec<TextureId> {
+        let earlier = self.plans[..pass].iter().flat_map(|p| &p.attachments);
+        let textures = earlier.flatten().map(|a| a.texture);
+        let sampled = |t: &TextureId| samples(&self.shape.passes[pass], *t);
+        let all = textures.filter(|t| self.drawn[t.index()] && sampled(t));
+        all.collect()
     }
 
     /// `read`: tiles read it from memory.

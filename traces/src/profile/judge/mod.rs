@@ -43,6 +43,8 @@ pub struct Judge {
     plans: Vec<PassPlan>,
     merges: Vec<PassMerge>,
     hiz: Vec<HizCounts>,
+    /// By texture: drawn to since it was sampled.
+    drawn: Vec<bool>,
     texels_recorded: bool,
     begun: usize,
     bins: Bins,
@@ -95,6 +97,7 @@ impl Judge {
                 .collect(),
             entries: vec![PENDING; lines],
             hiz: vec![HizCounts::default(); rows],
+            drawn: vec![false; shape.textures.len()],
             texels_recorded: !reads_textures(shape),
             begun: 0,
             bins: Bins::default(),

@@ -7,6 +7,4 @@ mod run;
 mod write;
 
 pub(crate) use args::RenderArgs;
-pub(crate) use frames::RATE;
-pub(crate) use job::DEFAULT_SIZE;
 pub(crate) use run::run;

@@ -31,11 +31,10 @@ mod tests {
     fn a_panic_is_an_error_with_its_words() {
         assert_eq!(guarded(0, || 7).unwrap(), 7);
         let number = 3;
-        for (stopped, words) in [
-            (guarded(2, || panic!("plain")), "plain"),
-            (guarded(2, || panic!("number {number}")), "number 3"),
-        ] {
-            let error = stopped.map(|()| ()).unwrap_err().to_string();
+        let plain: Result<(), _> = guarded(2, || panic!("plain"));
+        let numbered: Result<(), _> = guarded(2, || panic!("number {number}"));
+        for (stopped, words) in [(plain, "plain"), (numbered, "number 3")] {
+            let error = stopped.unwrap_err().to_string();
             assert!(
                 error.contains(words) && error.contains("frame 2"),
                 "{error}"

@@ -38,4 +38,5 @@ pub use replay::{DrawDifference, ReplayDepth, ReplayDifference, Replayed, replay
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
 pub use trace::{FrameCounters, SectionNote, ShaderNote, Trace};
 pub use trim::{Keep, trim};
+pub use walk::{Until, draw_until};
 pub use witness::Witness;

@@ -2,6 +2,34 @@
 
 use gnomon_raster::{CommandList, Error, Gpu, GpuConfig, LoadOp, Recording, RenderPass, StoreOp};
 
+/// How far a frame is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// To its end.
+    End,
+    /// Through all draws of a pass; what it forgets at its end is still there.
+    Pass(usize),
+    /// Through a draw, pass and draw.
+    Draw([usize; 2]),
+}
+
+/// A GPU that has drawn `recording` so far.
+///
+/// # Errors
+/// What the GPU refuses.
+///
+/// # Panics
+/// Where there is no such pass or draw.
+pub fn draw_until(recording: &Recording, until: Until, config: GpuConfig) -> Result<Gpu, Error> {
+    let mut walk = Walk::start(recording, config)?;
+    match until {
+        Until::End => walk.finish()?,
+        Until::Pass(pass) => walk.reach_end(pass)?,
+        Until::Draw(at) => walk.reach(at).map(|_| ())?,
+    }
+    Ok(walk.gpu)
+}
+
 /// A frame that is drawn as far as it was asked for.
 pub(crate) struct Walk<'a> {
     pub(crate) gpu: Gpu,
@@ -24,12 +52,33 @@ impl<'a> Walk<'a> {
     /// # Panics
     /// Where there is no such draw.
     pub(crate) fn reach(&mut self, [pass, draw]: [usize; 2]) -> Result<&'a RenderPass, Error> {
+        self.finish_passes(pass)?;
+        let pass = &self.frame.list.passes[pass];
+        self.draw_on(pass, draw + 1)?;
+        Ok(pass)
+    }
+
+    /// Draws on, all draws of a pass included.
+    fn reach_end(&mut self, pass: usize) -> Result<(), Error> {
+        self.finish_passes(pass)?;
+        let pass = &self.frame.list.passes[pass];
+        match pass.draws.len() {
+            0 => self.submit(part(pass, 0, 0, false)),
+            end => self.draw_on(pass, end),
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.finish_passes(self.frame.list.passes.len())
+    }
+
+    /// All passes before number `end`.
+    fn finish_passes(&mut self, end: usize) -> Result<(), Error> {
         let passes = &self.frame.list.passes;
-        while self.next[0] < pass {
+        while self.next[0] < end {
             self.finish_pass(&passes[self.next[0]])?;
         }
-        self.draw_until(&passes[pass], draw + 1)?;
-        Ok(&passes[pass])
+        Ok(())
     }
 
     fn finish_pass(&mut self, pass: &RenderPass) -> Result<(), Error> {
@@ -39,7 +88,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn draw_until(&mut self, pass: &RenderPass, end: usize) -> Result<(), Error> {
+    fn draw_on(&mut self, pass: &RenderPass, end: usize) -> Result<(), Error> {
         let first = self.next[1];
         if first < end {
             self.submit(part(pass, first, end, false))?;

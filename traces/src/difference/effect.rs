@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gnomon_raster::{Error, Format, Gpu, GpuConfig, Recording, RenderPass, Subresource, TextureId};
+use gnomon_raster::{Error, Format, GpuConfig, Recording, Subresource, TextureId};
 
 use super::align::Pair;
 use super::image::{Aspect, Image};

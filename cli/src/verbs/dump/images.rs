@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use gnomon_raster::{Error, Format, Gpu, GpuConfig, Recording, Subresource, Texture};
+use gnomon_raster::{Error, Gpu, GpuConfig, Recording, Subresource, Texture};
 
 use crate::error::CliError;
 use crate::output::files::Batch;
+use crate::output::textures::Aspect;
 use crate::output::{npy, png, textures};
 
 /// When textures are looked at.
@@ -65,37 +66,18 @@ fn name(texture: usize, image: Subresource, moment: Moment) -> String {
 
 /// Depth and stencil are an array each.
 fn arrays(texture: &Texture, image: Subresource, name: &str) -> Result<Vec<Named>, Error> {
-    let [width, height, _] = texture.mip_size(image.mip);
-    let format = texture.descriptor().format;
-    let array = |aspect: &str, channels, bytes: &[u8]| {
-        let kind = if aspect == "-stencil" {
-            "|u1"
-        } else {
-            kind(format)
-        };
-        let bytes = npy::encode_texels([width, height], kind, channels, bytes);
-        (format!("{name}{aspect}.npy"), bytes)
+    let aspects: &[Aspect] = match texture.descriptor().format.is_depth_stencil() {
+        true => &[Aspect::Depth, Aspect::Stencil],
+        false => &[Aspect::Color],
     };
-    if !format.is_depth_stencil() {
-        let bytes = texture.read_packed(image)?;
-        return Ok(vec![array("", format.channels(), &bytes)]);
-    }
-    let depth = texture.read_depth_bits(image)?;
-    let depth: Vec<u8> = depth.iter().flat_map(|d| d.to_le_bytes()).collect();
-    let stencil = texture.read_stencil(image)?;
-    Ok(vec![
-        array("-depth", 1, &depth),
-        array("-stencil", 1, &stencil),
-    ])
-}
-
-/// NumPy's name of what a channel is stored as; depths of 24 bits take 32.
-fn kind(format: Format) -> &'static str {
-    match format {
-        Format::R8Unorm | Format::Rg8Unorm | Format::Rgba8Unorm => "|u1",
-        Format::R16Sint => "<i2",
-        Format::R16Float | Format::Rgba16Float => "<f2",
-        Format::R32Float | Format::Rgba32Float | Format::Depth32FloatStencil8 => "<f4",
-        Format::R32Uint | Format::Depth24Stencil8 => "<u4",
-    }
+    let array = |aspect: &Aspect| {
+        let array = textures::array(texture, image, *aspect)?;
+        let suffix = match aspect {
+            Aspect::Color => String::new(),
+            _ => format!("-{}", aspect.name()),
+        };
+        let bytes = npy::encode_texels(array.size, array.kind, array.channels, &array.bytes);
+        Ok((format!("{name}{suffix}.npy"), bytes))
+    };
+    aspects.iter().map(array).collect()
 }

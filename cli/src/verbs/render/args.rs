@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::show::ShowRequest;
 use crate::flags::FrameArgs;
 use crate::overlay::OverlayKind;
 
@@ -23,6 +24,12 @@ pub(crate) struct RenderArgs {
     /// Also write explaining pictures beside the render, as OUT-OVERLAY.png
     #[arg(long, value_name = "OVERLAY", value_enum, value_delimiter = ',')]
     pub(crate) overlay: Vec<OverlayKind>,
+    /// Also write what a buffer holds, after a pass or a draw or at the end, by labels or
+    /// numbers (`gnomon record` and `dump` list them); .depth or .stencil, :MIP and :LAYER
+    /// may stand behind the buffer. PNG has a legend, EXR and NPY all digits [default file:
+    /// beside the render]; may be repeated
+    #[arg(long, value_name = "BUFFER[@PASS[/DRAW]][=FILE]", value_parser = ShowRequest::parse)]
+    pub(crate) show: Vec<ShowRequest>,
     /// Frames to time; the median is reported
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) repeat: u32,

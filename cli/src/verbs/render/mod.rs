@@ -4,6 +4,7 @@ mod args;
 mod frames;
 mod job;
 mod run;
+mod show;
 mod write;
 
 pub(crate) use args::RenderArgs;

@@ -30,9 +30,8 @@ pub(crate) fn run(args: &TrafficArgs) -> Result<(), CliError> {
     let judged = runs.iter().map(|(p, o)| judge(args, &file, &shape, p, *o));
     let judged: Vec<Traffic> = judged.collect::<Result<_, _>>()?;
     let name = args.trace.display().to_string();
-    let documents = judged
-        .iter()
-        .map(|t| TrafficDocument::new(&name, t, args.by));
+    let documents = judged.iter().zip(&runs);
+    let documents = documents.map(|(t, (_, o))| TrafficDocument::new(&name, t, args.by, o.merged));
     let documents: Vec<TrafficDocument> = documents.collect();
     if let (Some(path), Some(kind)) = (out, kind) {
         let mut batch = Batch::default();

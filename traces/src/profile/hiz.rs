@@ -224,7 +224,7 @@ impl Contents {
             self.valid = false;
         }
         // Nothing can be thrown away for a comparison that needs no depth.
-        let test = allowed.and_then(|()| match s.compare {
+        let test = allowed.and(match s.compare {
             C::Always | C::Never => Err(DisabledReason::Compare),
             _ => Ok(()),
         });

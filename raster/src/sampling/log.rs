@@ -54,7 +54,8 @@ impl Read {
 
     /// A number below [`KNOWN`].
     fn spread(&self) -> usize {
-        let image = u32::from(self.slot) << 4 ^ u32::from(self.mip) << 3 ^ u32::from(self.layer);
+        let image =
+            (u32::from(self.slot) << 4) ^ (u32::from(self.mip) << 3) ^ u32::from(self.layer);
         (self.index ^ image.wrapping_mul(7)) as usize % KNOWN
     }
 

@@ -117,7 +117,7 @@ pub(super) fn take_down<const D24: bool>(
     details::<D24>(env, t, place, probed, access);
     let turn = Turn {
         triangle: env.chunk.first + env.triangle,
-        place: place.y / 8 << 16 | place.x / 8,
+        place: ((place.y / 8) << 16) | (place.x / 8),
     };
     let Some(l) = &mut env.listening else { return };
     if (l.wants.witness.is_some() || l.wants.left.is_some()) && wrote(access) {

@@ -4,6 +4,7 @@
 //! suites and tables pick it up from there. A crate of its own adds one to a
 //! [`Registry`] instead.
 
+mod cone_culling;
 mod convolution_soft_shadows;
 mod mixed_lights;
 mod pcf;
@@ -19,6 +20,7 @@ mod soft_shadow_volumes;
 mod soft_shadow_volumes_optimised;
 mod unshadowed;
 
+use cone_culling::ConeCulling;
 use convolution_soft_shadows::ConvolutionSoftShadows;
 use mixed_lights::MixedLights;
 use pcf::Pcf;
@@ -53,6 +55,7 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &Pcss,
         &ShadowMapsN,
         &ConvolutionSoftShadows,
+        &ConeCulling,
         &MixedLights,
     ];
     LIST

@@ -20,6 +20,7 @@ mod annen_shadows;
 mod annen_sky;
 mod annen_table;
 pub mod chart;
+mod cones;
 mod equal_error;
 mod finding;
 mod judge;
@@ -37,6 +38,7 @@ mod paper4_quality;
 mod paper5;
 mod scenes;
 mod shader_work;
+mod smoothies;
 mod tally;
 mod thesis;
 
@@ -126,7 +128,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 8] = [
+    let papers: [&'static [Claim]; 10] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
@@ -135,6 +137,8 @@ pub fn claims() -> impl Iterator<Item = &'static Claim> {
         paper4::CLAIMS,
         paper5::CLAIMS,
         annen::CLAIMS,
+        cones::CLAIMS,
+        smoothies::CLAIMS,
     ];
     papers.into_iter().flatten()
 }

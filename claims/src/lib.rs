@@ -131,7 +131,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 10] = [
+    let papers: [&'static [Claim]; 12] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,

@@ -139,7 +139,9 @@ fn area(t: &[SmoothieVertex]) -> f64 {
 /// overlap: their areas are those of an outline grown by the width, but for corners' tips.
 #[test]
 fn corners_are_at_convex_vertices_only() {
-    let (_, found) = of(plus(), Attachment::Smoothies(0.02));
+    // Right under the light, which sees none of its sides.
+    let plus = plus().translated(DVec3::new(LIGHT.x, 0.0, LIGHT.z));
+    let (_, found) = of(plus, Attachment::Smoothies(0.02));
     assert_eq!((found.concave, found.corners), (4, 8));
     let (_, found) = of(block(), Attachment::Smoothies(0.02));
     let areas: f64 = found.vertices.chunks(3).map(|t| area(t).abs()).sum();
@@ -163,7 +165,7 @@ fn corners_are_at_convex_vertices_only() {
 fn cones_and_sheets_touch_the_light() {
     let radius = 0.4;
     let (_, found) = of(block(), Attachment::Cones(radius));
-    assert!(found.corners >= 6 && found.edges >= 4);
+    assert!(found.corners >= 4 && found.edges >= 4);
     for t in found.vertices.chunks(3) {
         let on = t.iter().filter(|v| v.distance < REACH.far);
         for v in on {

@@ -20,6 +20,7 @@ mod annen_shadows;
 mod annen_sky;
 mod annen_table;
 pub mod chart;
+mod cones;
 mod equal_error;
 mod finding;
 mod judge;
@@ -40,6 +41,7 @@ mod paper5;
 mod recorded;
 mod scenes;
 mod shader_work;
+mod smoothies;
 mod tally;
 mod thesis;
 
@@ -129,7 +131,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 10] = [
+    let papers: [&'static [Claim]; 12] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
@@ -140,6 +142,8 @@ pub fn claims() -> impl Iterator<Item = &'static Claim> {
         paper4::CLAIMS,
         paper5::CLAIMS,
         annen::CLAIMS,
+        cones::CLAIMS,
+        smoothies::CLAIMS,
     ];
     papers.into_iter().flatten()
 }

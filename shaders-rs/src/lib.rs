@@ -8,6 +8,7 @@
 //! * [`convolution`]: shadow maps that are filtered before they are compared
 //! * [`penumbra`]: penumbra wedges of papers I and II
 //! * [`shadow_maps`]: shadows looked up in light views
+//! * [`smoothies`]: geometry that softens the edges of shadow maps
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
@@ -27,6 +28,7 @@ pub mod coverage_table;
 pub mod light_view;
 pub mod penumbra;
 pub mod shadow_maps;
+pub mod smoothies;
 pub mod soft_volumes;
 pub mod split_volumes;
 pub mod surface;
@@ -84,6 +86,7 @@ stages! {
         transform::Surfaces: "transform.surfaces" 1,
         transform::FullScreen: "transform.full-screen" 1,
         transform::Facets: "transform.facets" 1,
+        smoothies::SmoothieVertices: "smoothies.vertices" 1,
         soft_volumes::HardQuads: "soft-volumes.hard-quads" 1,
         soft_volumes::EyeCount: "soft-volumes.eye-count" 1,
     }
@@ -124,6 +127,9 @@ stages! {
         cones::ConeShadow<cones::DiscSamples>: "cones.shadow-disc-samples" 1,
         cones::ConeShadow<cones::PatchTree>: "cones.shadow-patch-tree" 1,
         cones::ConeShadow<cones::AllPatches>: "cones.shadow-all-patches" 1,
+        smoothies::SmoothieDepth: "smoothies.depth" 1,
+        smoothies::SmoothieAlpha: "smoothies.alpha" 1,
+        smoothies::SmoothieShadow: "smoothies.shadow" 1,
         light_view::PlanarDepth: "light-view.planar-depth" 1,
         shadow_maps::Shadow<shadow_maps::BoxTaps>: "shadow-maps.box-taps" 1,
         shadow_maps::Shadow<shadow_maps::CubicTaps>: "shadow-maps.cubic-taps" 1,
@@ -139,7 +145,7 @@ mod tests {
     #[test]
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
-        assert_eq!(table.vertex_shaders().count(), 7);
-        assert_eq!(table.fragment_shaders().count(), 38);
+        assert_eq!(table.vertex_shaders().count(), 8);
+        assert_eq!(table.fragment_shaders().count(), 41);
     }
 }

@@ -12,6 +12,7 @@ pub(crate) mod outlines;
 pub mod silhouette;
 pub mod silhouette_loops;
 pub(crate) mod slivers;
+pub mod smoothie;
 pub mod volume;
 pub mod wedge;
 pub mod winding;

@@ -36,6 +36,8 @@ pub enum PassRole {
     Horizon,
     /// The scene seen from a light.
     LightView,
+    /// Geometry round silhouettes, seen from a light.
+    Smoothies,
     /// Images made of a light view, filtered.
     Prefilter,
     /// Shadows looked up in light views.

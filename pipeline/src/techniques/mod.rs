@@ -16,6 +16,7 @@ mod sampled_shadow_volumes;
 mod shadow_map;
 mod shadow_maps_n;
 mod shadow_volumes;
+mod smoothies;
 mod soft_shadow_volumes;
 mod soft_shadow_volumes_optimised;
 mod unshadowed;
@@ -31,6 +32,7 @@ use sampled_shadow_volumes::SampledShadowVolumes;
 use shadow_map::ShadowMap;
 use shadow_maps_n::ShadowMapsN;
 use shadow_volumes::ShadowVolumes;
+use smoothies::Smoothies;
 use soft_shadow_volumes::SoftShadowVolumes;
 use soft_shadow_volumes_optimised::SoftShadowVolumesOptimised;
 use unshadowed::Unshadowed;
@@ -56,6 +58,7 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &ShadowMapsN,
         &ConvolutionSoftShadows,
         &ConeCulling,
+        &Smoothies,
         &MixedLights,
     ];
     LIST

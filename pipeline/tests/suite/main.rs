@@ -24,6 +24,7 @@ mod shader_identity;
 mod shadow_maps;
 mod shadow_maps_soft;
 mod shadow_volumes;
+mod smoothies;
 mod soft_residuals;
 mod soft_shaders;
 mod soft_shadow_volumes;

@@ -119,12 +119,18 @@ impl EventWriter {
     fn code(&mut self, b: &BlockAccess) {
         let c = &mut self.columns;
         let (covered, written) = (b.covered, b.written());
-        let mut code = u64::from(covered == u64::MAX) * FULL
-            | u64::from(b.ended.hiz) * HIZ
-            | u64::from(b.front) * FRONT
-            | u64::from(b.hiz_read) * HIZ_READ
-            | u64::from(b.hiz_write) * HIZ_WRITE
-            | u64::from(b.witness != 0) * WITNESSED;
+        let flags = [
+            (covered == u64::MAX, FULL),
+            (b.ended.hiz, HIZ),
+            (b.front, FRONT),
+            (b.hiz_read, HIZ_READ),
+            (b.hiz_write, HIZ_WRITE),
+            (b.witness != 0, WITNESSED),
+        ];
+        let mut code = 0;
+        for i in 0..flags.len() {
+            code |= u64::from(flags[i].0) * flags[i].1;
+        }
         if covered != u64::MAX {
             c.mask(OTHERS, covered);
         }

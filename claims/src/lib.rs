@@ -38,6 +38,7 @@ mod paper5;
 mod scenes;
 mod shader_work;
 mod tally;
+mod tamura;
 mod thesis;
 
 use thiserror::Error;
@@ -126,7 +127,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 8] = [
+    let papers: [&'static [Claim]; 9] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
@@ -135,6 +136,7 @@ pub fn claims() -> impl Iterator<Item = &'static Claim> {
         paper4::CLAIMS,
         paper5::CLAIMS,
         annen::CLAIMS,
+        tamura::CLAIMS,
     ];
     papers.into_iter().flatten()
 }

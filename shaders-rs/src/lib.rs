@@ -3,6 +3,7 @@
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`convolution`]: shadow maps that are filtered before they are compared
 //! * [`penumbra`]: penumbra wedges of papers I and II
@@ -22,6 +23,7 @@ mod bounded;
 pub mod convolution;
 pub mod coverage;
 pub mod coverage_table;
+pub mod deferred;
 pub mod light_view;
 pub mod penumbra;
 pub mod shadow_maps;
@@ -84,6 +86,10 @@ stages! {
         transform::Facets: "transform.facets" 1,
         soft_volumes::HardQuads: "soft-volumes.hard-quads" 1,
         soft_volumes::EyeCount: "soft-volumes.eye-count" 1,
+        deferred::radiance::VertexRadiance: "deferred.vertex-radiance" 1,
+        deferred::radiance::Reflections: "deferred.reflections" 1,
+        deferred::radiance::Corners: "deferred.corners" 1,
+        deferred::obscured::Transported: "deferred.transported" 1,
     }
     fragment {
         surface::Constant: "surface.constant" 1,
@@ -122,6 +128,13 @@ stages! {
         shadow_maps::Shadow<shadow_maps::CubicTaps>: "shadow-maps.cubic-taps" 1,
         shadow_maps::Shadow<shadow_maps::SampledKernel>: "shadow-maps.sampled-kernel" 1,
         shadow_maps::Shadow<shadow_maps::WholeKernel>: "shadow-maps.whole-kernel" 1,
+        deferred::radiance::Carried: "deferred.carried" 1,
+        deferred::radiance::GlossyRadiance: "deferred.glossy-radiance" 1,
+        deferred::radiance::SurfaceRadiance: "deferred.surface-radiance" 1,
+        deferred::maps::BoxAlong: "deferred.box-along" 1,
+        deferred::obscured::ObscuredRadiance: "deferred.obscured-radiance" 1,
+        deferred::obscured::DistantVisibility: "deferred.distant-visibility" 1,
+        deferred::lit::LessObscured: "deferred.less-obscured" 1,
     }
 }
 
@@ -132,7 +145,7 @@ mod tests {
     #[test]
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
-        assert_eq!(table.vertex_shaders().count(), 7);
-        assert_eq!(table.fragment_shaders().count(), 33);
+        assert_eq!(table.vertex_shaders().count(), 11);
+        assert_eq!(table.fragment_shaders().count(), 40);
     }
 }

@@ -5,6 +5,7 @@
 //! [`Registry`] instead.
 
 mod convolution_soft_shadows;
+mod deferred_shadowing;
 mod mixed_lights;
 mod pcf;
 mod pcss;
@@ -20,6 +21,7 @@ mod soft_shadow_volumes_optimised;
 mod unshadowed;
 
 use convolution_soft_shadows::ConvolutionSoftShadows;
+use deferred_shadowing::DeferredShadowing;
 use mixed_lights::MixedLights;
 use pcf::Pcf;
 use pcss::Pcss;
@@ -53,6 +55,7 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &Pcss,
         &ShadowMapsN,
         &ConvolutionSoftShadows,
+        &DeferredShadowing,
         &MixedLights,
     ];
     LIST

@@ -4,7 +4,7 @@ use super::{TRANSPORT_VERSION, TransportObject, TransportSettings};
 
 /// Hash of everything that decides transport: geometry to the bit, and settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TransportKey(pub(in crate::truth::oracle) [u8; 32]);
+pub struct TransportKey(pub(super) [u8; 32]);
 
 impl TransportKey {
     /// Of an object.
@@ -25,5 +25,15 @@ impl TransportKey {
         add(&mut floats.map(|c| c.to_bits()));
         add(&mut object.triangles.iter().flatten().copied());
         Self(*hasher.finalize().as_bytes())
+    }
+
+    /// The hash.
+    pub fn bytes(&self) -> [u8; 32] {
+        self.0
+    }
+
+    /// Name of a file of such transport.
+    pub fn file_name(&self) -> String {
+        format!("{}.gnomprt", blake3::Hash::from_bytes(self.0).to_hex())
     }
 }

@@ -116,6 +116,17 @@ impl Transport {
         KEPT.get(key.0, Self::bytes, || Self::new(object, settings, &|_| {}))
     }
 
+    /// Keeps what came from elsewhere for [`Self::kept`].
+    pub(super) fn keep(self: Arc<Self>, key: TransportKey) {
+        let bytes = self.bytes();
+        KEPT.keep(key.0, self, bytes);
+    }
+
+    /// What is kept under `key`.
+    pub(super) fn find(key: &TransportKey) -> Option<Arc<Self>> {
+        KEPT.find(&key.0)
+    }
+
     /// Number of vertices.
     pub fn vertices(&self) -> usize {
         self.diffuse.len() / terms(self.settings.bands)

@@ -72,6 +72,9 @@ pub enum ReproduceError {
     /// The GPU refuses its settings or a frame.
     #[error(transparent)]
     Gpu(#[from] gnomon_raster::Error),
+    /// A frame cannot be recorded, or not be judged.
+    #[error("{0}")]
+    Recorded(String),
 }
 
 /// A place to measure in; keeps the truth about scenes it was asked for.

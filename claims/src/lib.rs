@@ -28,13 +28,16 @@ mod overlaps;
 mod paper1;
 mod paper2;
 mod paper2_range;
+mod paper2_recorded;
 mod paper2_tiles;
 mod paper2_time;
 mod paper3;
+mod paper3_recorded;
 mod paper3_scaling;
 mod paper4;
 mod paper4_quality;
 mod paper5;
+mod recorded;
 mod scenes;
 mod shader_work;
 mod tally;
@@ -127,12 +130,18 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
+<<<<<<< HEAD
     let papers: [&'static [Claim]; 9] = [
+=======
+    let papers: [&'static [Claim]; 10] = [
+>>>>>>> main
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
         paper2_range::CLAIMS,
+        paper2_recorded::CLAIMS,
         paper3::CLAIMS,
+        paper3_recorded::CLAIMS,
         paper4::CLAIMS,
         paper5::CLAIMS,
         annen::CLAIMS,

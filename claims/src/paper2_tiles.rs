@@ -9,9 +9,9 @@ use gnomon_pipeline::technique::PassRole;
 
 pub(super) const TECHNIQUE: &str = "penumbra-wedges-restructured";
 
-const TILES: [u32; 8] = [2, 4, 8, 16, 32, 64, 128, 256];
-const SCENES: [&str; 2] = ["columns", "fractal"];
-const PASSES: [&str; 2] = ["three", "single"];
+pub(super) const TILES: [u32; 8] = [2, 4, 8, 16, 32, 64, 128, 256];
+pub(super) const SCENES: [&str; 2] = ["columns", "fractal"];
+pub(super) const PASSES: [&str; 2] = ["three", "single"];
 
 /// Counts of one scene and algorithm over tile sizes.
 struct Sweep {

@@ -1,6 +1,6 @@
 use super::*;
 
-fn lab() -> Lab {
+pub(super) fn lab() -> Lab {
     let settings = LabSettings {
         size: [64, 48],
         repeat: 1,

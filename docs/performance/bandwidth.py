@@ -3,17 +3,21 @@
 
     cargo build --release && python3 docs/performance/bandwidth.py > docs/bandwidth-tables.md
 
+The environment variable GNOMON names another program than target/release/gnomon: its bytes
+are the same, whatever it was built with.
+
 Each frame is recorded once (640x400, colours in rgba8, which every profile can blend) and
 judged without being drawn again. Same program, same figures: nothing here is timed.
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-GNOMON = ROOT / "target/release/gnomon"
+GNOMON = os.environ.get("GNOMON", ROOT / "target/release/gnomon")
 SCENES = ["demo", "spheres", "columns"]
 TECHNIQUES = [
     ("unshadowed", []),

@@ -2,6 +2,7 @@
 //!
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
+//! * [`cones`]: shadows of spheres from the patches of a light view
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
 //! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
@@ -20,6 +21,7 @@
 //! version when what it computes changes.
 
 mod bounded;
+pub mod cones;
 pub mod convolution;
 pub mod coverage;
 pub mod coverage_table;
@@ -123,6 +125,11 @@ stages! {
             "convolution.shadow-float-tables" 1,
         convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>:
             "convolution.shadow-integer-tables" 1,
+        cones::patches::PatchPicture: "cones.patch-picture" 1,
+        cones::bounds::PatchBounds: "cones.patch-bounds" 1,
+        cones::ConeShadow<cones::DiscSamples>: "cones.shadow-disc-samples" 1,
+        cones::ConeShadow<cones::PatchTree>: "cones.shadow-patch-tree" 1,
+        cones::ConeShadow<cones::AllPatches>: "cones.shadow-all-patches" 1,
         light_view::PlanarDepth: "light-view.planar-depth" 1,
         shadow_maps::Shadow<shadow_maps::BoxTaps>: "shadow-maps.box-taps" 1,
         shadow_maps::Shadow<shadow_maps::CubicTaps>: "shadow-maps.cubic-taps" 1,
@@ -146,6 +153,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 11);
-        assert_eq!(table.fragment_shaders().count(), 40);
+        assert_eq!(table.fragment_shaders().count(), 45);
     }
 }

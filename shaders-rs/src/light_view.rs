@@ -95,9 +95,47 @@ uniforms!(PlanarDepth {
     slope_limit
 });
 
+/// Where a texel's ray meets a facet.
+pub(crate) struct Hit<L: Lanes> {
+    /// Where the ray starts, and its direction, one long along the view's axis.
+    pub(crate) start: [F32<L>; 3],
+    pub(crate) direction: [F32<L>; 3],
+    /// Distance along the axis beyond the base, world units.
+    pub(crate) distance: F32<L>,
+    normal: [F32<L>; 3],
+    /// Cosine between both times the direction's length.
+    slope: F32<L>,
+}
+
 impl FragmentShader for PlanarDepth {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let Hit {
+            distance,
+            normal,
+            slope,
+            ..
+        } = self.hit(l, f);
+        let distance = match self.slope > 0.0 {
+            true => {
+                let widening = match self.projection {
+                    Projection::Perspective => distance + self.base,
+                    Projection::Orthographic => F32::splat(l, 1.0),
+                };
+                distance + self.pushed(l, normal, widening / slope.abs())
+            }
+            false => distance,
+        };
+        let depth = self.range.scaled(distance).clamp(0.0, 1.0);
+        let zero = F32::splat(l, 0.0);
+        f.set_color(0, [depth, zero, zero, F32::splat(l, 1.0)]);
+    }
+}
+
+impl PlanarDepth {
+    /// Where the rays through the texels meet the facet's plane.
+    #[inline(always)]
+    pub(crate) fn hit<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> Hit<L> {
         let (x, y) = (f.x(), f.y());
         let rays = &self.rays;
         // From the corner of the picture to the texel.
@@ -128,21 +166,18 @@ impl FragmentShader for PlanarDepth {
         let moved = dot3(normal, start);
         let slope = dot3(normal, direction);
         let steep = slope.abs().gt(length(direction) * EDGE_ON);
-        let (interpolated, widening) = match perspective {
-            true => (f.w() - self.base, None),
-            false => (self.range.distance(f.depth()), Some(F32::splat(l, 1.0))),
+        let interpolated = match perspective {
+            true => f.w() - self.base,
+            false => self.range.distance(f.depth()),
         };
         let distance = steep.select_f32((f.varying(6) - moved) / slope, interpolated);
-        let distance = match self.slope > 0.0 {
-            true => {
-                let step = widening.unwrap_or(distance + self.base) / slope.abs();
-                distance + self.pushed(l, normal, step)
-            }
-            false => distance,
-        };
-        let depth = self.range.scaled(distance).clamp(0.0, 1.0);
-        let zero = F32::splat(l, 0.0);
-        f.set_color(0, [depth, zero, zero, F32::splat(l, 1.0)]);
+        Hit {
+            start,
+            direction,
+            distance,
+            normal,
+            slope,
+        }
     }
 }
 

@@ -42,10 +42,22 @@ pub(crate) fn texel_of<L: Lanes>(
     slot: usize,
     at: [I32<L>; 3],
 ) -> [F32<L>; 4] {
+    texel_of_mip(l, f, slot, at, 0)
+}
+
+/// The same of an image of a mip chain.
+#[inline(always)]
+pub(crate) fn texel_of_mip<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    slot: usize,
+    at: [I32<L>; 3],
+    mip: u32,
+) -> [F32<L>; 4] {
     outlined(
         l,
         #[inline(always)]
-        || f.fetch_texel(slot, at, 0),
+        || f.fetch_texel(slot, at, mip),
     )
 }
 

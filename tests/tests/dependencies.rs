@@ -7,7 +7,7 @@ use gnomon_tests::sources::{below, read, root};
 use toml::{Table, Value};
 
 /// Crate, its folder, and the workspace crates that it may need.
-/// Dependency goes one way: raster ← shaders ← pipeline ← claims ← cli, raster ← traces ← cli,
+/// Dependency goes one way: raster ← shaders ← pipeline ← claims ← cli, raster ← traces ← claims,
 /// traces ← golden.
 const LAYERS: &[(&str, &str, &[&str])] = &[
     ("gnomon-raster", "raster", &[]),
@@ -20,7 +20,12 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
     (
         "gnomon-claims",
         "claims",
-        &["gnomon-raster", "gnomon-shaders", "gnomon-pipeline"],
+        &[
+            "gnomon-raster",
+            "gnomon-shaders",
+            "gnomon-pipeline",
+            "gnomon-traces",
+        ],
     ),
     ("gnomon-traces", "traces", &["gnomon-raster"]),
     (

@@ -9,6 +9,7 @@ mod error;
 pub mod findings;
 mod format;
 pub mod frozen;
+mod guard;
 mod hashes;
 pub mod history;
 pub mod judged;
@@ -24,10 +25,12 @@ mod shape;
 mod stream;
 mod trace;
 mod trim;
+mod walk;
 pub mod witness;
 
 pub use difference::*;
 pub use error::TraceError;
+pub use guard::guarded;
 pub use hashes::DrawHashes;
 pub use meta::{Meta, Mode};
 pub use record::{RecordOptions, Recorder, record};
@@ -35,4 +38,5 @@ pub use replay::{DrawDifference, ReplayDepth, ReplayDifference, Replayed, replay
 pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
 pub use trace::{FrameCounters, SectionNote, ShaderNote, Trace};
 pub use trim::{Keep, trim};
+pub use walk::{Until, draw_until};
 pub use witness::Witness;

@@ -1,13 +1,12 @@
 //! Drawing a frame, whole or pass by pass, so that what each pass leaves can be looked at.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use gnomon_raster::{
     CommandList, Error, Gpu, GpuConfig, Recording, RenderPass, SubmitReport, Subresource, TextureId,
 };
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::error::TraceError;
+use crate::guard;
 
 /// A new GPU with the textures of `recording`, after `list`.
 pub(crate) fn draw(
@@ -56,22 +55,10 @@ pub(crate) fn end_hashes(gpu: &Gpu, pass: &RenderPass) -> Result<Vec<u128>, Erro
     attachments(pass).into_iter().map(hash).collect()
 }
 
-/// What `run` gives; where a shader panics, whose uniforms may be anything in a file, that
-/// is an error of `frame`.
+/// What `run` gives; what the GPU refuses, or a shader that panics, is an error of `frame`.
 pub(crate) fn guarded<T>(
     frame: usize,
     run: impl FnOnce() -> Result<T, Error>,
 ) -> Result<T, TraceError> {
-    match catch_unwind(AssertUnwindSafe(run)) {
-        Ok(Ok(value)) => Ok(value),
-        Ok(Err(source)) => Err(TraceError::Gpu { frame, source }),
-        Err(panic) => {
-            let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
-            let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
-            Err(TraceError::Stopped {
-                frame,
-                message: text.unwrap_or_else(|| "no message".to_owned()),
-            })
-        }
-    }
+    guard::guarded(frame, run)?.map_err(|source| TraceError::Gpu { frame, source })
 }

@@ -318,3 +318,58 @@ fn a_single_change_in_any_draw_is_found() {
         }
     }
 }
+
+/// A draw that writes what is there already, over more or fewer blocks.
+fn same_again(size: f32) -> Draw {
+    let always = StencilFaceState {
+        pass_op: StencilOperation::Keep,
+        ..COUNTING
+    };
+    triangle("same again", &pipeline(Some(0.0), always), size)
+}
+
+#[test]
+fn which_blocks_were_written_is_no_difference_where_they_hold_the_same() {
+    let a = changed(|draws| draws.insert(0, same_again(0.5)));
+    let b = changed(|draws| draws.insert(0, same_again(2.0)));
+    assert_ne!(hashes(&a).tiles(0, 0), hashes(&b).tiles(0, 0));
+    assert_eq!(first(&a, &b), None);
+    let b = changed(|draws| {
+        draws[5].count = 0;
+        draws.insert(0, same_again(2.0));
+    });
+    let found = first(&a, &b).unwrap();
+    assert_eq!(found.draws, [Some([0, 6]); 2]);
+    assert_eq!(found.attachments[0].aspect, "stencil");
+}
+
+/// The same pass twice, the second on the depth and stencil that the first left, which
+/// forgets its stencil.
+fn twice() -> Recording {
+    let mut frame = frame();
+    let mut second = frame.list.passes[0].clone();
+    second.label = "again".into();
+    let depth = second.depth_stencil.as_mut().unwrap();
+    depth.depth_load = LoadOp::Load;
+    depth.stencil_load = LoadOp::Load;
+    second.draws[..8].iter_mut().for_each(|d| d.count = 0);
+    second.draws.insert(0, same_again(2.0));
+    frame.list.passes.push(second);
+    frame
+}
+
+#[test]
+fn a_difference_in_a_later_pass_is_found_on_what_the_earlier_left() {
+    let mut a = twice();
+    a.list.passes[1].draws[0] = same_again(0.5);
+    let mut b = twice();
+    // Whatever is counted now stays, and the floor sees it.
+    b.list.passes[1].draws[8].count = 3;
+    let found = first(&a, &b).unwrap();
+    assert_eq!(found.draws, [Some([1, 8]); 2]);
+    let [stencil] = &found.attachments[..] else {
+        panic!("{found:?}")
+    };
+    // The first pass forgot its counts.
+    assert_eq!(stencil.values, [[0; 4], [1, 0, 0, 0]]);
+}

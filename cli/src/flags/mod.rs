@@ -2,12 +2,17 @@
 
 mod environment;
 mod execution;
+mod frame;
 mod listing;
 mod scene;
+mod settings;
 mod values;
 
 pub(crate) use environment::EnvArgs;
 pub(crate) use execution::GpuArgs;
+pub(crate) use frame::{DEFAULT_SIZE, FrameArgs};
 pub(crate) use listing::ListArgs;
 pub(crate) use scene::SceneArgs;
-pub(crate) use values::{parse_rate, parse_setting, parse_size, parse_time};
+pub(crate) use settings::parameters;
+use values::parse_rate;
+pub(crate) use values::{parse_setting, parse_size, parse_time};

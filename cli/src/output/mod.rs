@@ -10,6 +10,7 @@ pub(crate) mod numbers;
 pub(crate) mod png;
 pub(crate) mod progress;
 pub(crate) mod tables;
+pub(crate) mod textures;
 pub(crate) mod warnings;
 pub(crate) mod wrap;
 

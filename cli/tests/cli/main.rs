@@ -13,6 +13,7 @@ mod render;
 mod report;
 mod reproduce;
 mod same_bits;
+mod show;
 mod sweep;
 mod traces;
 mod traffic;

@@ -169,3 +169,43 @@ fn what_is_not_there_is_refused_with_what_is() {
     );
     refused("pixel none.gnt 3 4", &["none.gnt"]);
 }
+
+/// What gdb says when it is given the line of `debug` for the fragment of `event`.
+fn debugged(folder: &Folder, place: &str) -> String {
+    let text = folder.gnomon(&format!("debug {place}")).fine().stdout();
+    let line = text.lines().last().unwrap().trim();
+    let gnomon = env!("CARGO_BIN_EXE_gnomon");
+    let line = line.replace("rust-gdb", "gdb -nx -batch");
+    let line = line.replace("--args gnomon", &format!("-ex 'bt 1' --args '{gnomon}'"));
+    let mut shell = std::process::Command::new("sh");
+    let output = shell.args(["-c", &line]).current_dir(folder.path("."));
+    let output = output.env_remove("DEBUGINFOD_URLS").output().unwrap();
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[test]
+fn the_line_for_the_debugger_stops_in_the_shader_of_the_fragment() {
+    let gdb = std::process::Command::new("gdb").arg("--version").output();
+    if gdb.is_err() {
+        eprintln!("skipped: there is no gdb");
+        return;
+    }
+    let folder = Folder::new("debugger");
+    let record = "record adversarial-eye-in-shadow --size 160x100 --set method=zfail";
+    folder.gnomon(&format!("{record} --out a.gnt")).fine();
+    // The ball in the light's pass is run; the count of its volume is not.
+    let text = debugged(&folder, "a.gnt 57 41 8");
+    if text.contains("ptrace") {
+        eprintln!("skipped: programs may not be traced here");
+        return;
+    }
+    let stopped = text
+        .lines()
+        .any(|l| l.starts_with("#0") && l.contains("shade<"));
+    assert!(stopped && text.contains("surface.rs"), "{text}");
+    let text = debugged(&folder, "a.gnt 57 41 5");
+    let stopped = text
+        .lines()
+        .any(|l| l.contains("#0") && l.contains("reach_probed_fragment"));
+    assert!(stopped, "{text}");
+}

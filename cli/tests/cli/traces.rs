@@ -48,6 +48,97 @@ fn equal_frames_have_no_difference_and_others_exit_with_1() {
     assert_eq!(document["equal"], false);
     assert_eq!(document["made"][0]["name"], "method");
     assert!(!document["states"].as_array().unwrap().is_empty());
+    // Both ways of counting leave the same stencil, though not by the same blocks.
+    assert!(document["first"].is_null());
+}
+
+/// The eye is in shadow: z-pass counts wrong, z-fail right.
+fn wrong_and_right(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    for method in ["zpass", "zfail"] {
+        let scene = "record adversarial-eye-in-shadow --size 40x25";
+        let command = format!("{scene} --set method={method} --out {method}.gnt");
+        folder.gnomon(&command).fine();
+    }
+    folder
+}
+
+#[test]
+fn the_first_pixel_that_differs_has_a_history_in_both() {
+    let folder = wrong_and_right("traces-histories");
+    let different = folder.gnomon("diff zpass.gnt zfail.gnt --json");
+    assert_eq!(different.code(), 1);
+    let document: serde_json::Value = serde_json::from_str(&different.stdout()).unwrap();
+    let first = &document["first"]["attachments"][0];
+    let histories = document["histories"].as_array().unwrap();
+    for history in histories {
+        assert_eq!(history["pixel"], first["first"]);
+        assert!(!history["events"].as_array().unwrap().is_empty());
+    }
+    assert_ne!(histories[0]["events"], histories[1]["events"]);
+    let text = folder.gnomon("diff zpass.gnt zfail.gnt").stdout();
+    for name in ["zpass.gnt", "zfail.gnt"] {
+        assert!(text.contains(&format!("in {name}: pixel (")), "{text}");
+    }
+}
+
+#[test]
+fn the_cause_of_a_difference_is_told() {
+    let folder = wrong_and_right("traces-bisect");
+    let equal = folder.gnomon("bisect zpass.gnt zpass.gnt");
+    equal.refused(&["same bits"]);
+    let found = folder.gnomon("bisect zpass.gnt zfail.gnt --json").fine();
+    let document: serde_json::Value = serde_json::from_str(&found.stdout()).unwrap();
+    assert_eq!(document["aspect"], "color");
+    assert_ne!(document["shown"][0], document["shown"][1]);
+    let causes = document["cause"].as_array().unwrap().len() as u64;
+    assert!(causes > 0 && causes < document["of"].as_u64().unwrap());
+    assert!(document["replays"].as_u64().unwrap() > 2);
+}
+
+/// Numbers of an array of bytes or 32-bit integers, and its shape.
+fn array(bytes: &[u8]) -> (String, &[u8]) {
+    let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let header = String::from_utf8(bytes[10..10 + length].to_vec()).unwrap();
+    (header, &bytes[10 + length..])
+}
+
+#[test]
+fn images_and_buffers_are_written_as_they_are_stored() {
+    let folder = recorded("traces-dump", "");
+    folder
+        .gnomon("dump a.gnt --images images --buffers buffers")
+        .fine();
+    let read = |name: &str| fs::read(folder.path(name)).unwrap();
+    let names = fs::read_dir(folder.path("images")).unwrap();
+    let names: Vec<String> = names
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let depth = names
+        .iter()
+        .find(|n| n.ends_with("last-depth.npy"))
+        .unwrap();
+    let before = depth.replace("last", "first");
+    let stencil = depth.replace("depth", "stencil");
+    let [first, last] = [before.as_str(), depth].map(|n| read(&format!("images/{n}")));
+    let (header, numbers) = array(&last);
+    assert!(
+        header.contains("'<u4'") && header.contains("(32, 48)"),
+        "{header}"
+    );
+    assert_eq!(numbers.len(), 32 * 48 * 4);
+    assert_ne!(first, last, "the frame draws");
+    let stencil = read(&format!("images/{stencil}"));
+    let (header, _) = array(&stencil);
+    assert!(header.contains("'|u1'"), "{header}");
+    // The picture is that of `render`.
+    folder
+        .gnomon("render parallel-plates --size 48x32 --out b.png")
+        .fine();
+    let shown = names.iter().filter(|n| n.ends_with("last.png"));
+    let same = shown.filter(|n| read(&format!("images/{n}")) == read("b.png"));
+    assert_eq!(same.count(), 1);
+    assert!(folder.path("buffers/pass-0-draw-0-vertices.bin").exists());
 }
 
 #[test]

@@ -29,6 +29,43 @@ fn rows_add_up_to_the_totals_in_each_form() {
     }
 }
 
+/// Ambient, volumes and light share their tiles; what looks up a buffer does not.
+#[test]
+fn merged_passes_are_named_and_so_are_reasons_against() {
+    let folder = Folder::new("traffic-merged");
+    folder.gnomon(RECORD).fine();
+    let line = "traffic a.gnt --profile tbr-mali --per-pass-merged --json";
+    let documents = folder.gnomon(line).json();
+    let [apart, merged] = [0, 1].map(|i| &documents[i]);
+    assert!(apart["merges"].is_null());
+    let merges = merged["merges"].as_array().unwrap();
+    assert!(merges.len() >= 2);
+    for merge in merges {
+        assert_eq!(merge["merged"], true, "{merge}");
+        assert!(merge["refused_reason"].is_null());
+    }
+    let dram = |d: &serde_json::Value| {
+        let total = &d["totals"]["dram"];
+        total["read_bytes"].as_u64().unwrap() + total["write_bytes"].as_u64().unwrap()
+    };
+    assert!(dram(merged) < dram(apart));
+    folder
+        .gnomon("record creature --size 64x48 --technique soft-shadow-volumes --out b.gnt")
+        .fine();
+    let text = folder
+        .gnomon("traffic b.gnt --profile tbr-mali --per-pass-merged")
+        .fine()
+        .stdout();
+    assert!(
+        text.contains("goes on in the tiles of the passes before"),
+        "{text}"
+    );
+    assert!(
+        text.contains("begins tiles of its own: it samples `"),
+        "{text}"
+    );
+}
+
 #[test]
 fn what_is_wrong_is_said() {
     let folder = Folder::new("traffic-wrong");

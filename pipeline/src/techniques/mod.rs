@@ -4,6 +4,7 @@
 //! suites and tables pick it up from there. A crate of its own adds one to a
 //! [`Registry`] instead.
 
+mod cone_culling;
 mod convolution_soft_shadows;
 mod deferred_shadowing;
 mod mixed_lights;
@@ -20,6 +21,7 @@ mod soft_shadow_volumes;
 mod soft_shadow_volumes_optimised;
 mod unshadowed;
 
+use cone_culling::ConeCulling;
 use convolution_soft_shadows::ConvolutionSoftShadows;
 use deferred_shadowing::DeferredShadowing;
 use mixed_lights::MixedLights;
@@ -55,7 +57,11 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &Pcss,
         &ShadowMapsN,
         &ConvolutionSoftShadows,
+<<<<<<< HEAD
         &DeferredShadowing,
+=======
+        &ConeCulling,
+>>>>>>> main
         &MixedLights,
     ];
     LIST

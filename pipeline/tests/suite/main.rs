@@ -2,6 +2,7 @@
 //! binary: it links once.
 
 mod comparison;
+mod cone_culling;
 mod convolution_hazards;
 mod convolution_soft_shadows;
 mod convolution_tables;

@@ -1,7 +1,7 @@
 //! Which change of state makes a pixel differ: that of the second frame is put into the
 //! first, part by part.
 
-use gnomon_raster::{Error, Gpu, GpuConfig, Recording, Subresource, TextureId};
+use gnomon_raster::{Error, Format, Gpu, GpuConfig, Recording, Subresource, TextureId};
 
 use super::facet::FACETS;
 use super::image::{Aspect, Image};
@@ -38,6 +38,8 @@ pub struct Cause {
 pub struct DifferingPixel {
     /// The texture's label.
     pub label: String,
+    /// The texture's format.
+    pub format: Format,
     /// `color`, `depth` or `stencil`.
     pub aspect: &'static str,
     /// Column and row.
@@ -172,6 +174,7 @@ fn first_differing_pixel(a: &Gpu, b: &Gpu) -> Result<DifferingPixel, BisectError
                 if let Some((pixel, values)) = a.differing(&b).next() {
                     return Ok(DifferingPixel {
                         label: descriptor.label.clone(),
+                        format: descriptor.format,
                         aspect: aspect.name(),
                         pixel,
                         values,

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use gnomon_raster::{Error, Gpu, GpuConfig, Recording, RenderPass};
+use gnomon_raster::{Error, Format, GpuConfig, Recording, Subresource, TextureId};
 
 use super::align::Pair;
 use super::image::{Aspect, Image};
 use super::state::Alignment;
 use crate::hashes::DrawHashes;
-use crate::prefix::until;
-use crate::run::draw;
+use crate::walk::Walk;
 
 /// Side of a tile of [`DrawHashes`] in pixels.
 const TILE: u32 = 64;
@@ -24,7 +23,8 @@ pub struct FirstDifference {
     pub labels: [String; 2],
     /// Column and row of the first tile of 64×64 pixels that differs.
     pub tile: [u16; 2],
-    /// How the attachments differ in that tile after the draw.
+    /// How the attachments differ in that tile after the draw; nothing where the draw is in
+    /// one frame only.
     pub attachments: Vec<AttachmentDifference>,
 }
 
@@ -33,6 +33,10 @@ pub struct FirstDifference {
 pub struct AttachmentDifference {
     /// Its texture's label.
     pub label: String,
+    /// Its texture's format.
+    pub format: Format,
+    /// In both frames, the texture, and which of its images.
+    pub images: [(TextureId, Subresource); 2],
     /// `color`, `depth` or `stencil`.
     pub aspect: &'static str,
     /// Number of pixels that differ.
@@ -46,9 +50,9 @@ pub struct AttachmentDifference {
 /// A draw of two frames, or of one.
 type Place = [Option<[usize; 2]>; 2];
 
-/// Finds where the frames of `a` and `b` first differ in what they drew, and how; `None`
-/// where every draw left the same behind, and there are the same draws. Draws that wrote
-/// nothing do not count.
+/// Finds where two frames first differ in what they drew, and how; `None` where every draw
+/// left the same behind, and there are the same draws. Draws that wrote nothing do not
+/// count, nor does which blocks a draw wrote where it left the same in all.
 ///
 /// # Errors
 /// What the GPU refuses.
@@ -57,26 +61,41 @@ pub fn first_difference(
     hashes: [&DrawHashes; 2],
     config: GpuConfig,
 ) -> Result<Option<FirstDifference>, Error> {
-    let mut places = draws_side_by_side(frames).into_iter();
-    let found = places.find_map(|place| Some((place, differing_tile(hashes, place)?)));
-    let Some((place, tile)) = found else {
-        return Ok(None);
-    };
-    let after = [0, 1].map(|side| place[side].map(|at| state_after(frames[side], at, config)));
-    let [a, b] = after;
-    let attachments = match (a.transpose()?, b.transpose()?) {
-        (Some(a), Some(b)) => differing_attachments(&a, &b, tile)?,
-        _ => Vec::new(),
-    };
+    let mut walks = [
+        Walk::start(frames[0], config)?,
+        Walk::start(frames[1], config)?,
+    ];
+    for place in draws_side_by_side(frames) {
+        let Some(written) = differing_tile(hashes, place) else {
+            continue;
+        };
+        let (tile, attachments) = match place {
+            [Some(a), Some(b)] => {
+                let [first, second] = &mut walks;
+                let sides = [images_after(first, a)?, images_after(second, b)?];
+                match first_differing_tile(&sides) {
+                    Some(tile) => (tile, differing_attachments(&sides, tile)),
+                    None => continue,
+                }
+            }
+            _ => (written, Vec::new()),
+        };
+        return Ok(Some(FirstDifference {
+            draws: place,
+            labels: labels(frames, place),
+            tile,
+            attachments,
+        }));
+    }
+    Ok(None)
+}
+
+/// Of the pass and of the draw.
+fn labels(frames: [&Recording; 2], place: Place) -> [String; 2] {
     let of = if place[0].is_some() { 0 } else { 1 };
     let [pass, draw] = place[of].expect("one of both");
     let pass = &frames[of].list.passes[pass];
-    Ok(Some(FirstDifference {
-        draws: place,
-        labels: [pass.label.clone(), pass.draws[draw].label.clone()],
-        tile,
-        attachments,
-    }))
+    [pass.label.clone(), pass.draws[draw].label.clone()]
 }
 
 /// The draws of both frames in their order, those with one label in aligned passes side by
@@ -114,53 +133,63 @@ fn differing_tile(hashes: [&DrawHashes; 2], place: Place) -> Option<[u16; 2]> {
     differing.min_by_key(|at| (at[1], at[0])).copied()
 }
 
-/// A GPU as it is right after a draw, and the pass that the draw is in.
-struct After<'a> {
-    gpu: Gpu,
-    pass: &'a RenderPass,
+/// An aspect of an attachment.
+struct Attached {
+    label: String,
+    format: Format,
+    image: (TextureId, Subresource),
+    aspect: Aspect,
+    texels: Image,
 }
 
-fn state_after(frame: &Recording, at: [usize; 2], config: GpuConfig) -> Result<After<'_>, Error> {
-    let (gpu, _) = draw(frame, &until(&frame.list, at), config)?;
-    let pass = &frame.list.passes[at[0]];
-    Ok(After { gpu, pass })
+/// Depth, stencil and colours of the pass that a draw is in, right after the draw.
+fn images_after(walk: &mut Walk<'_>, at: [usize; 2]) -> Result<Vec<Attached>, Error> {
+    let pass = walk.reach(at)?;
+    let depth = pass.depth_stencil.iter();
+    let depth = depth.flat_map(|a| {
+        [Aspect::Depth, Aspect::Stencil].map(|aspect| (a.texture, a.subresource, aspect))
+    });
+    let color = pass.color.iter();
+    let color = color.map(|a| (a.texture, a.subresource, Aspect::Color));
+    let read = |(id, image, aspect)| {
+        let texture = walk.gpu.texture(id)?.descriptor();
+        Ok(Attached {
+            label: texture.label.clone(),
+            format: texture.format,
+            image: (id, image),
+            aspect,
+            texels: Image::read(&walk.gpu, id, image, aspect)?,
+        })
+    };
+    depth.chain(color).map(read).collect()
 }
 
-impl After<'_> {
-    /// Depth, stencil and colours of the pass, with their textures' labels.
-    fn images(&self) -> Result<Vec<(String, Aspect, Image)>, Error> {
-        let depth = self.pass.depth_stencil.iter();
-        let depth = depth.flat_map(|a| {
-            [Aspect::Depth, Aspect::Stencil].map(|aspect| (a.texture, a.subresource, aspect))
-        });
-        let color = self.pass.color.iter();
-        let color = color.map(|a| (a.texture, a.subresource, Aspect::Color));
-        let read = |(id, image, aspect)| {
-            let label = self.gpu.texture(id)?.descriptor().label.clone();
-            Ok((label, aspect, Image::read(&self.gpu, id, image, aspect)?))
-        };
-        depth.chain(color).map(read).collect()
-    }
+fn side_by_side(sides: &[Vec<Attached>; 2]) -> impl Iterator<Item = (&Attached, &Attached)> {
+    sides[0].iter().zip(&sides[1])
 }
 
-fn differing_attachments(
-    a: &After<'_>,
-    b: &After<'_>,
-    tile: [u16; 2],
-) -> Result<Vec<AttachmentDifference>, Error> {
+/// The first tile, in rows, in which any attachment differs.
+fn first_differing_tile(sides: &[Vec<Attached>; 2]) -> Option<[u16; 2]> {
+    let differing = side_by_side(sides).flat_map(|(a, b)| a.texels.differing(&b.texels));
+    let tiles = differing.map(|(pixel, _)| pixel.map(|p| (p / TILE) as u16));
+    tiles.min_by_key(|[x, y]| (*y, *x))
+}
+
+fn differing_attachments(sides: &[Vec<Attached>; 2], tile: [u16; 2]) -> Vec<AttachmentDifference> {
     let in_tile = |pixel: [u32; 2]| pixel.map(|p| p / TILE) == tile.map(u32::from);
-    let mut found = Vec::new();
-    for ((label, aspect, a), (_, _, b)) in a.images()?.into_iter().zip(b.images()?) {
-        let mut differing = a.differing(&b).filter(|(pixel, _)| in_tile(*pixel));
-        if let Some((first, values)) = differing.next() {
-            found.push(AttachmentDifference {
-                label,
-                aspect: aspect.name(),
-                pixels: 1 + differing.count(),
-                first,
-                values,
-            });
-        }
-    }
-    Ok(found)
+    let difference = |(a, b): (&Attached, &Attached)| {
+        let differing = a.texels.differing(&b.texels);
+        let mut differing = differing.filter(|(pixel, _)| in_tile(*pixel));
+        let (first, values) = differing.next()?;
+        Some(AttachmentDifference {
+            label: a.label.clone(),
+            format: a.format,
+            images: [a.image, b.image],
+            aspect: a.aspect.name(),
+            pixels: 1 + differing.count(),
+            first,
+            values,
+        })
+    };
+    side_by_side(sides).filter_map(difference).collect()
 }

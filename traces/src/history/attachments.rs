@@ -33,23 +33,27 @@ pub(super) struct Attachments {
     pub(super) size: [u32; 2],
 }
 
-type Image = (TextureId, Subresource);
+/// A texture, and which of its images.
+pub(super) type Image = (TextureId, Subresource);
 
 impl Attachments {
     /// Those of the output `name` of `recording`.
     pub(super) fn of(recording: &Recording, name: Option<&str>) -> Result<Self, HistoryError> {
-        let mut images: Vec<Image> = Vec::new();
         let passes = &recording.list.passes;
-        match start(recording, name)? {
-            Some(texture) => images.extend(
-                passes
-                    .iter()
-                    .flat_map(attached)
-                    .filter(|(t, _)| *t == texture)
-                    .take(1),
-            ),
-            None => images.extend(passes.last().into_iter().flat_map(attached)),
-        }
+        let all = || passes.iter().flat_map(attached);
+        let first = match start(recording, name)? {
+            Some(texture) => all().filter(|(t, _)| *t == texture).take(1).collect(),
+            None => passes.last().into_iter().flat_map(attached).collect(),
+        };
+        Self::beside(recording, first)
+    }
+
+    /// `images` themselves, and what is attached beside them.
+    pub(super) fn beside(
+        recording: &Recording,
+        mut images: Vec<Image>,
+    ) -> Result<Self, HistoryError> {
+        let passes = &recording.list.passes;
         // Each round adds what is attached beside the images so far.
         let mut known = 0;
         while known < images.len() {

@@ -16,7 +16,7 @@ pub use attachments::{Attachment, Value};
 pub use debug::{Debug, DebugStage, DebugVertex};
 pub use event::{Change, EventKind, FragmentEvent, PixelEvent, StencilUse};
 
-use gnomon_raster::{Error, Gpu, GpuConfig, Recording, Wants};
+use gnomon_raster::{Error, Gpu, GpuConfig, Recording, Subresource, TextureId, Wants};
 
 use attachments::Attachments;
 use collect::{Collector, Found};
@@ -109,11 +109,35 @@ pub fn pixel(
     pixel: [u32; 2],
 ) -> Result<History, HistoryError> {
     let attachments = Attachments::of(recording, options.image.as_deref())?;
+    follow(recording, options.config, attachments, pixel)
+}
+
+/// [`pixel`] of an image that need be no output: `image` is a texture that a pass draws to,
+/// and which of its images.
+///
+/// # Errors
+/// Those of [`pixel`].
+pub fn pixel_of(
+    recording: &Recording,
+    config: GpuConfig,
+    image: (TextureId, Subresource),
+    pixel: [u32; 2],
+) -> Result<History, HistoryError> {
+    let attachments = Attachments::beside(recording, vec![image])?;
+    follow(recording, config, attachments, pixel)
+}
+
+fn follow(
+    recording: &Recording,
+    config: GpuConfig,
+    attachments: Attachments,
+    pixel: [u32; 2],
+) -> Result<History, HistoryError> {
     let size = attachments.size;
     if pixel[0] >= size[0] || pixel[1] >= size[1] {
         return Err(HistoryError::Outside { pixel, size });
     }
-    let mut gpu = Gpu::new(options.config)?;
+    let mut gpu = Gpu::new(config)?;
     gpu.load(recording)?;
     let first = attachments.read(&gpu, pixel)?;
     let found = fragments(&mut gpu, recording, pixel)?;

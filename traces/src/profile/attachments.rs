@@ -1,4 +1,4 @@
-//! What passes do to attachments at their ends, and which passes a tiler can merge.
+//! What passes do to attachments at their ends.
 
 use gnomon_raster::{LoadOp, StoreOp, Subresource, TextureId};
 
@@ -18,6 +18,19 @@ pub(super) struct Attachment {
     pub(super) new_depth: bool,
     /// Depth is forgotten at the end.
     pub(super) lost_depth: bool,
+    /// Depth and stencil, not colour.
+    pub(super) is_depth: bool,
+    /// Aspects that are loaded: depth and stencil; colour is the first.
+    pub(super) loads: [bool; 2],
+    /// Aspects that are forgotten at the end.
+    pub(super) discards: [bool; 2],
+}
+
+impl Attachment {
+    /// Whether both are the same image.
+    pub(super) fn is_image_of(&self, other: &Self) -> bool {
+        (self.texture, self.subresource) == (other.texture, other.subresource)
+    }
 }
 
 /// Depth and stencil, then colour.
@@ -35,6 +48,9 @@ pub(super) fn attachments(shape: &FrameShape, pass: &PassShape) -> Vec<Option<At
             cleared_bytes: if cleared { bytes } else { 0 },
             new_depth: false,
             lost_depth: false,
+            is_depth: false,
+            loads: [matches!(a.load, LoadOp::Load), false],
+            discards: [a.store == StoreOp::Discard, false],
         }));
     }
     all
@@ -58,28 +74,10 @@ fn depth_stencil(shape: &FrameShape, pass: &PassShape) -> Option<Attachment> {
         cleared_bytes: u8::from(depth) * depth_bytes + u8::from(stencil),
         new_depth: !loads[0],
         lost_depth: a.depth_store == StoreOp::Discard,
+        is_depth: true,
+        loads,
+        discards: [a.depth_store, a.stencil_store].map(|s| s == StoreOp::Discard),
     })
-}
-
-/// Whether each pass can go on in the tiles of the one before it: the same attachments,
-/// loaded and not cleared, and none of them sampled.
-pub(super) fn mergeable(shape: &FrameShape) -> Vec<bool> {
-    let all = &shape.passes;
-    let goes_on = |i: usize| i > 0 && continues(shape, &all[i - 1], &all[i]);
-    (0..all.len()).map(goes_on).collect()
-}
-
-fn continues(shape: &FrameShape, before: &PassShape, pass: &PassShape) -> bool {
-    let (old, new) = (attachments(shape, before), attachments(shape, pass));
-    let image = |a: &Attachment| (a.texture, a.subresource);
-    let same = old.len() == new.len()
-        && old
-            .iter()
-            .zip(&new)
-            .all(|(a, b)| a.as_ref().map(image) == b.as_ref().map(image));
-    let loads = new.iter().flatten().all(|a| a.loaded);
-    let sampled = |a: &Attachment| samples(pass, a.texture);
-    same && loads && !old.iter().flatten().any(sampled)
 }
 
 /// Whether a draw of the pass has the texture in a slot.

@@ -170,7 +170,7 @@ pub(super) struct At {
 }
 
 /// All that was charged.
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq)]
 pub(super) struct Ledger {
     pub(super) rows: Vec<[Levels; CLIENTS]>,
     /// By client, then cell; empty for clients that charged nothing.

@@ -210,22 +210,31 @@ impl Contents {
     }
 
     fn r300(&mut self, s: &State) -> (Result<(), DisabledReason>, bool) {
-        let test = s
-            .plain()
+        use CompareFunction as C;
+        let allowed = s
+            .plain_or_always()
             .and_then(|()| self.r300_direction(s.compare))
             .and_then(|()| fail_operations(&s.faces))
             .and_then(|()| self.usable());
-        if test.is_ok() {
-            self.direction = self.direction.or(direction(s.compare));
+        if allowed.is_ok() {
+            // What has no direction is taken for Less.
+            let first = direction(s.compare).or(Some(Direction::Less));
+            self.direction = self.direction.or(first);
         } else if s.write {
             self.valid = false;
         }
+        // Nothing can be thrown away for a comparison that needs no depth.
+        let test = allowed.and(match s.compare {
+            C::Always | C::Never => Err(DisabledReason::Compare),
+            _ => Ok(()),
+        });
         (test, true)
     }
 
     fn r300_direction(&self, compare: CompareFunction) -> Result<(), DisabledReason> {
+        use CompareFunction as C;
         match (self.direction, direction(compare)) {
-            (_, None) => Err(DisabledReason::Compare),
+            _ if matches!(compare, C::Equal | C::NotEqual) => Err(DisabledReason::Compare),
             (Some(known), Some(now)) if known != now => Err(DisabledReason::DirectionChanged),
             _ => Ok(()),
         }
@@ -288,7 +297,15 @@ impl State {
 
     /// Depth is tested, and as it is interpolated.
     fn plain(&self) -> Result<(), DisabledReason> {
-        if !self.attached || !self.compare.reads_stored() {
+        match self.compare.reads_stored() {
+            true => self.plain_or_always(),
+            false => Err(DisabledReason::Compare),
+        }
+    }
+
+    /// As [`Self::plain`], if depth is tested at all.
+    fn plain_or_always(&self) -> Result<(), DisabledReason> {
+        if !self.attached {
             return Err(DisabledReason::Compare);
         }
         if self.bounds {

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::cache::CacheCounts;
 use super::charge::{CLIENTS, Client, Ledger, Levels};
 use super::hiz::DisabledReason;
+use super::merge::PassMerge;
 
 /// What HiZ did for a draw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -54,7 +55,7 @@ impl TrafficRow {
 }
 
 /// The traffic of a frame under a profile.
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq)]
 pub struct Traffic {
     /// The profile's name.
     pub profile: String,
@@ -68,6 +69,9 @@ pub struct Traffic {
     pub caches: [CacheCounts; 2],
     /// All look-ups were recorded; otherwise textures have logical bytes only.
     pub texels_recorded: bool,
+    /// Where merging was asked of a tiler: of each pass but the first, whether it goes on in
+    /// the tiles of those before.
+    pub merges: Vec<PassMerge>,
     pub(super) ledger: Ledger,
 }
 

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test takes what it needs")]
 
+pub(crate) mod sums;
+
 use std::sync::Arc;
 
 use gnomon_raster::shader::{
@@ -32,6 +34,7 @@ pub(crate) struct Vertex {
 pub(crate) struct Case {
     pub(crate) size: [u32; 2],
     pub(crate) format: Format,
+    pub(crate) depth_format: Format,
     pub(crate) clear: [f32; 4],
     pub(crate) depth: Option<CompareFunction>,
     /// States of draws, where they are not all the same.
@@ -40,6 +43,8 @@ pub(crate) struct Case {
     pub(crate) layers: Vec<f32>,
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) textured: bool,
+    /// Shaders may discard, so that they run before the depth test.
+    pub(crate) discards: bool,
     pub(crate) truncated: bool,
     pub(crate) blended: bool,
 }
@@ -49,23 +54,25 @@ impl Case {
         Self {
             size: [width, height],
             format: Format::Rgba8Unorm,
+            depth_format: Format::Depth24Stencil8,
             clear: [0.0; 4],
             depth: Some(CompareFunction::LessEqual),
             states: Vec::new(),
             layers: vec![0.0],
             vertices: Vec::new(),
             textured: false,
+            discards: false,
             truncated: false,
             blended: false,
         }
     }
 
-    fn recording(&self) -> Recording {
+    pub(crate) fn recording(&self) -> Recording {
         let [w, h] = self.size;
         let mut r = Recording::default();
         let d2 = |label, format| TextureDescriptor::d2(label, format, w, h);
         let color = r.create(&d2("color", self.format)).unwrap();
-        let depth = r.create(&d2("depth", Format::Depth24Stencil8)).unwrap();
+        let depth = r.create(&d2("depth", self.depth_format)).unwrap();
         let image = TextureDescriptor::d2("image", Format::Rgba8Unorm, 256, 256);
         let image = r.create(&image).unwrap();
         let noise = |i: u32| (i.wrapping_mul(2_654_435_761) >> 24) as f32 / 255.0;
@@ -158,7 +165,9 @@ impl Case {
 
     fn fragment(&self) -> FragmentStage {
         if self.textured {
-            return FragmentStage::from(Textured);
+            return FragmentStage::from(Textured {
+                discards: self.discards,
+            });
         }
         let truncated = self.truncated;
         per_fragment(FragmentOutputs::default(), move |f| {
@@ -178,28 +187,11 @@ impl Case {
     }
 
     fn observe(&self, observer: &mut dyn AccessObserver) {
-        let recording = self.recording();
-        let mut gpu = Gpu::new(GpuConfig {
-            threads: 1,
-            skip: false,
-            ..GpuConfig::default()
-        })
-        .unwrap();
-        gpu.load(&recording).unwrap();
-        let wants = Wants {
-            depth_ranges: true,
-            texels: true,
-            witness: Some(&Witness),
-            ..Wants::default()
-        };
-        gpu.submit_observed(&recording.list, wants, observer)
-            .unwrap();
+        observe(&self.recording(), observer);
     }
 
     pub(crate) fn judge(&self, profile: &Profile, options: JudgeOptions) -> Traffic {
-        let mut judge = Judge::with_options(profile, &self.shape(), options).unwrap();
-        self.observe(&mut judge);
-        judge.finish()
+        judge(&self.recording(), profile, options)
     }
 
     pub(crate) fn fragments(&self) -> u64 {
@@ -221,6 +213,33 @@ impl Case {
     }
 }
 
+/// Draws a frame, with skipping off.
+pub(crate) fn observe(recording: &Recording, observer: &mut dyn AccessObserver) {
+    let mut gpu = Gpu::new(GpuConfig {
+        threads: 1,
+        skip: false,
+        ..GpuConfig::default()
+    })
+    .unwrap();
+    gpu.load(recording).unwrap();
+    let wants = Wants {
+        depth_ranges: true,
+        texels: true,
+        witness: Some(&Witness),
+        ..Wants::default()
+    };
+    gpu.submit_observed(&recording.list, wants, observer)
+        .unwrap();
+}
+
+/// Draws a frame and judges it.
+pub(crate) fn judge(recording: &Recording, profile: &Profile, options: JudgeOptions) -> Traffic {
+    let shape = FrameShape::of(recording);
+    let mut judge = Judge::with_options(profile, &shape, options).unwrap();
+    observe(recording, &mut judge);
+    judge.finish()
+}
+
 #[derive(Default)]
 struct Tally {
     fragments: u64,
@@ -236,12 +255,15 @@ impl AccessObserver for Tally {
     }
 }
 
-struct Textured;
+struct Textured {
+    discards: bool,
+}
 
 impl FragmentShader for Textured {
     fn outputs(&self) -> FragmentOutputs {
         FragmentOutputs {
             textures: 1,
+            discards: self.discards,
             ..FragmentOutputs::default()
         }
     }

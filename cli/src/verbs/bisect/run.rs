@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::args::BisectArgs;
 use crate::error::CliError;
 use crate::output;
-use crate::verbs::diff::text::{raw, state_line};
+use crate::verbs::diff::text::{shown, state_line};
 use crate::verbs::diff::{Inputs, StateDocument};
 
 /// What `gnomon bisect --json` prints.
@@ -15,7 +15,11 @@ struct CauseDocument {
     texture: String,
     aspect: &'static str,
     pixel: [u32; 2],
+    format: String,
+    /// Raw channels in both.
     values: [[u32; 4]; 2],
+    /// What they mean.
+    shown: [String; 2],
     cause: Vec<StateDocument>,
     of: usize,
     replays: usize,
@@ -25,7 +29,8 @@ struct CauseDocument {
 pub(crate) fn run(args: &BisectArgs) -> Result<(), CliError> {
     let inputs = Inputs::open(&args.a, &args.b, args.frame)?;
     let [a, b] = inputs.frames();
-    let cause = bisect(a, b, args.by.suspects(), args.gpu.config())?;
+    let search = || bisect(a, b, args.by.suspects(), args.gpu.config());
+    let cause = inputs.drawn(0, search)??;
     if args.json {
         return output::print_json(&document(&cause));
     }
@@ -37,16 +42,18 @@ fn document(cause: &Cause) -> CauseDocument {
         texture: cause.pixel.label.clone(),
         aspect: cause.pixel.aspect,
         pixel: cause.pixel.pixel,
+        format: format!("{:?}", cause.pixel.format),
         values: cause.pixel.values,
+        shown: (cause.pixel.values).map(|v| shown(cause.pixel.aspect, cause.pixel.format, v)),
         cause: cause.differences.iter().map(StateDocument::new).collect(),
         of: cause.of,
         replays: cause.replays,
     }
 }
 
-fn describe(inputs: &Inputs, cause: &Cause) -> String {
+fn describe(inputs: &Inputs<'_>, cause: &Cause) -> String {
     let at = &cause.pixel;
-    let [from, to] = at.values.map(|v| raw(at.aspect, v));
+    let [from, to] = at.values.map(|v| shown(at.aspect, at.format, v));
     let [x, y] = at.pixel;
     let [a, b] = [&inputs.sides[0].name, &inputs.sides[1].name];
     let mut text = format!(

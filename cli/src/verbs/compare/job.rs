@@ -11,6 +11,7 @@ use gnomon_pipeline::world::scene::Scene;
 
 use super::args::{CompareArgs, EntryArg};
 use crate::error::CliError;
+use crate::flags::parameters;
 use crate::output::files;
 use crate::verbs;
 
@@ -124,7 +125,7 @@ impl Entry {
             .collect();
         Ok(Self {
             technique,
-            params: verbs::parameters(technique, &all, args.gpu.no_skip)?,
+            params: parameters(technique, &all, args.gpu.no_skip)?,
             label,
         })
     }

@@ -7,6 +7,7 @@ use gnomon_pipeline::world::scene::Scene;
 
 use super::args::DemoArgs;
 use crate::error::CliError;
+use crate::flags::parameters;
 use crate::output::json::RenderInputs;
 use crate::output::progress::Progress;
 
@@ -110,8 +111,8 @@ impl Shot {
             .iter()
             .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
             .collect();
-        let params = crate::verbs::parameters(technique, &given, args.gpu.no_skip)?;
-        let plain_params = crate::verbs::parameters(technique, &given, true)?;
+        let params = parameters(technique, &given, args.gpu.no_skip)?;
+        let plain_params = parameters(technique, &given, true)?;
         let mut settings = settings(args, REPEAT);
         let done = render(scene, technique, &params, &settings)?;
         settings.gpu.skip = false;

@@ -5,6 +5,8 @@ use serde::Serialize;
 
 use super::inputs::Inputs;
 use super::run::Differences;
+use super::text::shown;
+use crate::verbs::pixel::PixelDocument;
 
 /// What `gnomon diff --json` prints.
 #[derive(Serialize)]
@@ -15,6 +17,9 @@ pub(super) struct DiffDocument {
     states: Vec<StateDocument>,
     first: Option<FirstDocument>,
     counters: Vec<CounterDocument>,
+    /// Of the first pixel that differs after the first draw that differs, in both.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    histories: Option<[PixelDocument; 2]>,
 }
 
 #[derive(Serialize)]
@@ -54,7 +59,11 @@ struct AttachmentDocument {
     aspect: &'static str,
     pixels: usize,
     first: [u32; 2],
+    format: String,
+    /// Raw channels in both.
     values: [[u32; 4]; 2],
+    /// What they mean.
+    shown: [String; 2],
 }
 
 #[derive(Serialize)]
@@ -64,7 +73,7 @@ struct CounterDocument {
 }
 
 impl DiffDocument {
-    pub(super) fn new(inputs: &Inputs, found: &Differences) -> Self {
+    pub(super) fn new(inputs: &Inputs<'_>, found: &Differences) -> Self {
         let made = found.made.iter().cloned();
         let counters = found.counters.iter().cloned();
         Self {
@@ -75,6 +84,10 @@ impl DiffDocument {
                 .collect(),
             states: found.states.iter().map(StateDocument::new).collect(),
             first: found.first.as_ref().map(FirstDocument::new),
+            histories: found.histories.as_ref().map(|both| {
+                let [a, b] = both;
+                [a, b].map(|h| PixelDocument::new(h, inputs.number))
+            }),
             counters: counters
                 .map(|(name, values)| CounterDocument { name, values })
                 .collect(),
@@ -113,6 +126,8 @@ impl FirstDocument {
             aspect: a.aspect,
             pixels: a.pixels,
             first: a.first,
+            format: format!("{:?}", a.format),
+            shown: a.values.map(|v| shown(a.aspect, a.format, v)),
             values: a.values,
         });
         Self {

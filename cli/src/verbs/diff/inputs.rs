@@ -3,51 +3,52 @@
 use std::path::Path;
 
 use gnomon_raster::Recording;
-use gnomon_raster::shader::ShaderTable;
-use gnomon_traces::{Meta, Trace};
+use gnomon_traces::Meta;
 
 use crate::error::CliError;
+use crate::traces::TraceFile;
 
 /// One of the two.
-pub(crate) struct Side {
+pub(crate) struct Side<'a> {
     /// The file's name.
     pub(crate) name: String,
     pub(crate) meta: Meta,
     pub(crate) frame: Recording,
+    file: TraceFile<'a>,
 }
 
-impl Side {
-    fn open(path: &Path, frame: usize, table: &ShaderTable) -> Result<Self, CliError> {
-        let trace = Trace::open(path)?;
-        let named = |source| CliError::InTrace {
-            path: path.to_owned(),
-            source,
-        };
+impl<'a> Side<'a> {
+    fn open(path: &'a Path, frame: usize) -> Result<Self, CliError> {
+        let file = TraceFile::open(path)?;
+        let name = path.file_name().unwrap_or_default();
         Ok(Self {
-            name: path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned(),
-            meta: trace.meta().clone(),
-            frame: trace.recording(frame, table).map_err(named)?,
+            name: name.to_string_lossy().into_owned(),
+            meta: file.trace().meta().clone(),
+            frame: file.frame(frame)?,
+            file,
         })
     }
 }
 
 /// Both.
-pub(crate) struct Inputs {
-    pub(crate) sides: [Side; 2],
+pub(crate) struct Inputs<'a> {
+    pub(crate) sides: [Side<'a>; 2],
+    pub(super) number: usize,
 }
 
-impl Inputs {
-    pub(crate) fn open(a: &Path, b: &Path, frame: usize) -> Result<Self, CliError> {
-        let table = gnomon_shaders::table();
-        let sides = [Side::open(a, frame, &table)?, Side::open(b, frame, &table)?];
-        Ok(Self { sides })
+impl<'a> Inputs<'a> {
+    pub(crate) fn open(a: &'a Path, b: &'a Path, frame: usize) -> Result<Self, CliError> {
+        let sides = [Side::open(a, frame)?, Side::open(b, frame)?];
+        let number = frame;
+        Ok(Self { sides, number })
     }
 
     pub(crate) fn frames(&self) -> [&Recording; 2] {
         [&self.sides[0].frame, &self.sides[1].frame]
+    }
+
+    /// What `run` gives, which draws the frame of one side; see [`TraceFile::drawn`].
+    pub(crate) fn drawn<T>(&self, side: usize, run: impl FnOnce() -> T) -> Result<T, CliError> {
+        self.sides[side].file.drawn(self.number, run)
     }
 }

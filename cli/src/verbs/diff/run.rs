@@ -1,6 +1,7 @@
 //! Compares two frames: how they were made, as data, in what they draw, in what they count.
 
 use gnomon_raster::{GpuConfig, SubmitReport};
+use gnomon_traces::history::{self, History};
 use gnomon_traces::{
     DrawHashes, FirstDifference, StateDifference, compare_states, first_difference,
 };
@@ -20,6 +21,8 @@ pub(super) struct Differences {
     pub(super) first: Option<FirstDifference>,
     /// Sums over the frame: name, and the figure in both.
     pub(super) counters: Vec<(String, [u64; 2])>,
+    /// What happened in both to the first pixel that differs after that draw.
+    pub(super) histories: Option<[History; 2]>,
 }
 
 impl Differences {
@@ -47,16 +50,40 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), CliError> {
     }
 }
 
-fn compare(inputs: &Inputs, config: GpuConfig) -> Result<Differences, CliError> {
+fn compare(inputs: &Inputs<'_>, config: GpuConfig) -> Result<Differences, CliError> {
     let frames = inputs.frames();
-    let (a, report_a) = DrawHashes::measure(frames[0], config)?;
-    let (b, report_b) = DrawHashes::measure(frames[1], config)?;
+    let measure = |side: usize| inputs.drawn(side, || DrawHashes::measure(frames[side], config));
+    let (a, report_a) = measure(0)??;
+    let (b, report_b) = measure(1)??;
+    let first = first_difference(frames, [&a, &b], config)?;
+    let histories = match &first {
+        Some(first) => histories(inputs, first, config)?,
+        None => None,
+    };
     Ok(Differences {
         made: differing_settings(inputs),
         states: compare_states(frames[0], frames[1]),
-        first: first_difference(frames, [&a, &b], config)?,
+        histories,
+        first,
         counters: differing_figures(&[figures(&report_a), figures(&report_b)]),
     })
+}
+
+/// What happened to the first pixel that differs; nothing where a draw is in one frame only.
+fn histories(
+    inputs: &Inputs<'_>,
+    first: &FirstDifference,
+    config: GpuConfig,
+) -> Result<Option<[History; 2]>, CliError> {
+    let Some(at) = first.attachments.first() else {
+        return Ok(None);
+    };
+    let follow = |side: usize| {
+        let frame = &inputs.sides[side].frame;
+        let pixel = || history::pixel_of(frame, config, at.images[side], at.first);
+        Ok::<_, CliError>(inputs.drawn(side, pixel)??)
+    };
+    Ok(Some([follow(0)?, follow(1)?]))
 }
 
 /// Fragments by their end, and bytes by client, of a whole frame.
@@ -98,7 +125,7 @@ fn differing_figures([a, b]: &[Vec<(String, u64)>; 2]) -> Vec<(String, [u64; 2])
 }
 
 /// What the traces say of how they were made.
-fn differing_settings(inputs: &Inputs) -> Vec<(String, [Option<String>; 2])> {
+fn differing_settings(inputs: &Inputs<'_>) -> Vec<(String, [Option<String>; 2])> {
     let [a, b] = [0, 1].map(|side| {
         let meta = &inputs.sides[side].meta;
         let mut all = meta.params.clone();

@@ -1,16 +1,19 @@
 //! Differences for people.
 
+use gnomon_raster::Format;
+use gnomon_traces::history::History;
 use gnomon_traces::{AttachmentDifference, FirstDifference, Place, StateDifference};
 
 use super::inputs::Inputs;
 use super::run::Differences;
+use crate::verbs::pixel::{stored, text as history_text};
 
 /// State differences that are told; JSON lists all.
 const TOLD: usize = 24;
 /// Characters of a value that are told.
 const LONG: usize = 60;
 
-pub(super) fn describe(inputs: &Inputs, found: &Differences) -> String {
+pub(super) fn describe(inputs: &Inputs<'_>, found: &Differences) -> String {
     let [a, b] = [&inputs.sides[0].name, &inputs.sides[1].name];
     if found.none() {
         return format!("{a} and {b} are the same frame: state, every draw, counters\n");
@@ -19,15 +22,14 @@ pub(super) fn describe(inputs: &Inputs, found: &Differences) -> String {
     if !found.made.is_empty() {
         text += "made\n";
         for (name, [x, y]) in &found.made {
-            text += &format!(
-                "  {name}: {} -> {}\n",
-                shown(x.as_deref()),
-                shown(y.as_deref())
-            );
+            text += &format!("  {name}: {} -> {}\n", cut(x.as_deref()), cut(y.as_deref()));
         }
     }
     text += &describe_states(&found.states);
     text += &describe_first(inputs, found.first.as_ref());
+    if let Some(histories) = &found.histories {
+        text += &describe_histories(inputs, histories);
+    }
     if !found.counters.is_empty() {
         text += "counters\n";
         for (name, [x, y]) in &found.counters {
@@ -67,14 +69,14 @@ pub(crate) fn state_line(difference: &StateDifference) -> String {
         _ => format!(
             "{place}: {}: {} -> {}",
             difference.field,
-            shown(x.as_deref()),
-            shown(y.as_deref())
+            cut(x.as_deref()),
+            cut(y.as_deref())
         ),
     }
 }
 
 /// A value, cut where it is long.
-fn shown(value: Option<&str>) -> String {
+fn cut(value: Option<&str>) -> String {
     let value = value.unwrap_or("none");
     if value.chars().count() <= LONG {
         return value.to_owned();
@@ -106,7 +108,7 @@ fn number(numbers: [Option<usize>; 2]) -> String {
     }
 }
 
-fn describe_first(inputs: &Inputs, first: Option<&FirstDifference>) -> String {
+fn describe_first(inputs: &Inputs<'_>, first: Option<&FirstDifference>) -> String {
     let Some(first) = first else {
         return "drawn: equal\n".to_owned();
     };
@@ -133,17 +135,27 @@ fn describe_first(inputs: &Inputs, first: Option<&FirstDifference>) -> String {
 
 fn attachment_line(of: &AttachmentDifference) -> String {
     let [x, y] = of.first;
-    let values = of.values.map(|v| raw(of.aspect, v));
+    let values = of.values.map(|v| shown(of.aspect, of.format, v));
     format!(
         "{} of `{}`: {} pixels of the tile, first ({x}, {y}): {} -> {}",
         of.aspect, of.label, of.pixels, values[0], values[1]
     )
 }
 
-/// Raw channels: one number for depth and stencil.
-pub(crate) fn raw(aspect: &str, value: [u32; 4]) -> String {
+/// What is stored: channels by their format, one number for depth and stencil.
+pub(crate) fn shown(aspect: &str, format: Format, value: [u32; 4]) -> String {
     match aspect {
-        "color" => format!("{value:?}"),
+        "color" => stored(format, value),
         _ => value[0].to_string(),
     }
+}
+
+/// What happened to a pixel, in one frame and in the other.
+fn describe_histories(inputs: &Inputs<'_>, histories: &[History; 2]) -> String {
+    let both = inputs.sides.iter().zip(histories);
+    both.map(|(side, history)| {
+        let table = history_text(history, inputs.number);
+        format!("in {}: {table}", side.name)
+    })
+    .collect()
 }

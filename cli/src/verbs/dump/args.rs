@@ -13,7 +13,9 @@ pub(crate) struct DumpArgs {
     /// Which frame
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) frame: usize,
-    /// Also write what textures hold at first, as packed bytes: texture-0-mip-0-layer-0.bin
+    /// Also draw the frame, and write what each image of each texture holds before and
+    /// after: texture-0-mip-0-layer-0-last.npy, what is stored (depth and stencil in files
+    /// of their own), and .png, how a colour looks
     #[arg(long, value_name = "DIR")]
     pub(crate) images: Option<PathBuf>,
     /// Also write vertices and indices: pass-0-draw-0-vertices.bin, -indices.bin

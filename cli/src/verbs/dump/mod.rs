@@ -2,6 +2,7 @@
 
 mod args;
 mod document;
+mod images;
 mod run;
 
 pub(crate) use args::DumpArgs;

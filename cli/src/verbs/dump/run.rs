@@ -3,23 +3,26 @@
 use std::path::Path;
 
 use gnomon_raster::Recording;
-use gnomon_traces::{FrameShape, Trace};
+use gnomon_traces::FrameShape;
 
 use super::args::DumpArgs;
 use super::document::Line;
+use super::images;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::Batch;
+use crate::traces::TraceFile;
 
 /// Prints a line for each texture, pass and draw of a frame. Only data needs shaders.
 pub(crate) fn run(args: &DumpArgs) -> Result<(), CliError> {
-    let trace = Trace::open(&args.trace)?;
-    let shape = trace.shape(args.frame)?;
+    let file = TraceFile::open(&args.trace)?;
+    let shape = file.shape(args.frame)?;
     let mut batch = Batch::default();
     if args.images.is_some() || args.buffers.is_some() {
-        let recording = trace.recording(args.frame, &gnomon_shaders::table())?;
+        let recording = file.frame(args.frame)?;
         if let Some(folder) = &args.images {
-            images(&recording, folder, &mut batch)?;
+            let files = file.drawn(args.frame, || images::draw(&recording))??;
+            images::stage(&files, folder, &mut batch)?;
         }
         if let Some(folder) = &args.buffers {
             buffers(&recording, folder, &mut batch)?;
@@ -43,17 +46,6 @@ fn lines(shape: &FrameShape) -> Result<String, CliError> {
         text.push('\n');
     }
     Ok(text)
-}
-
-fn images(recording: &Recording, folder: &Path, batch: &mut Batch) -> Result<(), CliError> {
-    for (id, texture) in recording.textures().iter().enumerate() {
-        for (image, bytes) in texture.contents() {
-            let (mip, layer) = (image.mip, image.layer);
-            let name = format!("texture-{id}-mip-{mip}-layer-{layer}.bin");
-            batch.stage(&folder.join(name), bytes)?;
-        }
-    }
-    Ok(())
 }
 
 fn buffers(recording: &Recording, folder: &Path, batch: &mut Batch) -> Result<(), CliError> {

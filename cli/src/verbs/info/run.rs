@@ -1,16 +1,15 @@
 //! Says what is in a trace.
 
-use gnomon_traces::Trace;
-
 use super::args::InfoArgs;
 use super::document::TraceDocument;
 use crate::error::CliError;
 use crate::output::{self, numbers};
+use crate::traces::TraceFile;
 
 /// Prints what the trace says and holds.
 pub(crate) fn run(args: &InfoArgs) -> Result<(), CliError> {
-    let trace = Trace::open(&args.trace)?;
-    let document = TraceDocument::new(&args.trace, &trace)?;
+    let file = TraceFile::open(&args.trace)?;
+    let document = file.named(TraceDocument::new(&args.trace, file.trace()))?;
     match args.json {
         true => output::print_json(&document),
         false => output::print(&text(&document)),

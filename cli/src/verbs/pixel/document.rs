@@ -9,7 +9,7 @@ use super::words::{operation, sign};
 
 /// Everything that happened to a pixel.
 #[derive(Serialize)]
-pub(super) struct PixelDocument {
+pub(crate) struct PixelDocument {
     pixel: [u32; 2],
     frame: usize,
     size: [u32; 2],
@@ -59,7 +59,7 @@ struct ColorDocument {
 }
 
 impl PixelDocument {
-    pub(super) fn new(h: &History, frame: usize) -> Self {
+    pub(crate) fn new(h: &History, frame: usize) -> Self {
         let attachments = h.attachments.iter().map(|a| AttachmentDocument {
             label: a.label.clone(),
             texture: a.texture.index(),

@@ -7,5 +7,7 @@ mod text;
 mod words;
 
 pub(crate) use args::{PixelArgs, PlaceArgs};
+pub(crate) use document::PixelDocument;
 pub(crate) use run::{Shown, run};
-pub(crate) use words::float;
+pub(crate) use text::text;
+pub(crate) use words::{float, stored};

@@ -8,6 +8,7 @@ use super::document::PixelDocument;
 use super::text::text;
 use crate::error::CliError;
 use crate::output;
+use crate::traces::TraceFile;
 
 /// A frame, and what happened to a pixel of it.
 pub(crate) struct Shown {
@@ -19,7 +20,8 @@ pub(crate) struct Shown {
 impl Shown {
     /// Draws the frame again.
     pub(crate) fn new(place: &PlaceArgs) -> Result<Self, CliError> {
-        let recording = crate::traces::frame(&place.trace, place.frame)?;
+        let file = TraceFile::open(&place.trace)?;
+        let recording = file.frame(place.frame)?;
         let options = HistoryOptions {
             config: GpuConfig {
                 skip: !place.gpu.no_skip,
@@ -27,7 +29,8 @@ impl Shown {
             },
             image: place.image.clone(),
         };
-        let history = history::pixel(&recording, &options, [place.x, place.y])?;
+        let draw = || history::pixel(&recording, &options, [place.x, place.y]);
+        let history = file.drawn(place.frame, draw)??;
         Ok(Self {
             recording,
             options,

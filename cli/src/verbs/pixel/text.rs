@@ -9,7 +9,7 @@ use super::words::{operation, sign, stored};
 use crate::output::tables::Table;
 
 /// One row an event, then what the pixel holds.
-pub(super) fn text(h: &History, frame: usize) -> String {
+pub(crate) fn text(h: &History, frame: usize) -> String {
     let [x, y] = h.pixel;
     let title = format!(
         "pixel ({x}, {y}) of frame {frame}: {} events",

@@ -37,7 +37,7 @@ pub(crate) fn float(bits: u32) -> String {
 }
 
 /// Raw channels as what they mean: integers, or floats of float formats.
-pub(super) fn stored(f: Format, raw: [u32; 4]) -> String {
+pub(crate) fn stored(f: Format, raw: [u32; 4]) -> String {
     let one = |v: &u32| match f {
         Format::R16Float | Format::Rgba16Float => float(format::f32_from_f16(*v as u16).to_bits()),
         Format::R32Float | Format::Rgba32Float => float(*v),

@@ -11,15 +11,13 @@ use crate::output::files::{Batch, check_extension};
 use crate::output::progress::Progress;
 use crate::output::{self, numbers};
 use crate::verbs::info::TraceDocument;
-use crate::verbs::render::{DEFAULT_SIZE, RATE};
 
 /// Records what was asked for; the file appears whole or not at all.
 pub(crate) fn run(args: &RecordArgs, registry: &Registry) -> Result<(), CliError> {
     check_extension("--out", &args.out, "gnt")?;
-    let technique = registry.find(&args.technique)?;
-    let params = crate::verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
-    let request = args.environment.request(args.lights);
-    let mut source = args.scene.open()?.with_environment(request);
+    let technique = registry.find(&args.frame.technique)?;
+    let params = args.frame.params(technique)?;
+    let mut source = args.frame.source()?;
     let trace = record(args, technique, &params, &mut source)?;
     let mut batch = Batch::default();
     batch.stage(&args.out, trace.to_bytes())?;
@@ -37,24 +35,14 @@ fn record(
     params: &Params,
     source: &mut SceneSource,
 ) -> Result<Trace, CliError> {
-    let count = args.frames.unwrap_or(1);
-    let rate = args.fps.unwrap_or(RATE);
+    let count = args.frame.frames.unwrap_or(1);
+    args.frame.check_times(count)?;
     let progress = Progress::new(u64::from(count));
     let mut recorder = None;
     for frame in 0..count {
         progress.doing(format!("frame {frame}"));
-        let time = args.time + f64::from(frame) / rate;
-        if !time.is_finite() {
-            return Err(CliError::Flag {
-                flag: "--fps",
-                value: rate.to_string(),
-                valid: format!(
-                    "the time of frame {frame} is not finite: give more frames per second"
-                ),
-            });
-        }
-        let scene = source.at(time)?;
-        let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
+        let scene = source.at(args.frame.time_of(frame))?;
+        let size = args.frame.size_of(&scene);
         let drawn = technique.frame(&scene, size, params)?;
         recorder
             .get_or_insert_with(|| start(args, technique, params, &scene, size))
@@ -79,12 +67,12 @@ fn start(
         technique: technique.name().to_owned(),
         params: given.collect(),
         size,
-        fps: args.frames.map(|_| args.fps.unwrap_or(RATE)),
-        time: args.time,
+        fps: args.frame.frames.map(|_| args.frame.rate()),
+        time: args.frame.time,
         ..Meta::default()
     };
     let options = RecordOptions {
-        gpu: args.gpu.config(),
+        gpu: args.frame.gpu.config(),
         traffic: !args.no_traffic,
         frozen: args.frozen,
     };

@@ -4,26 +4,16 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::flags::{
-    EnvArgs, GpuArgs, SceneArgs, parse_rate, parse_setting, parse_size, parse_time,
-};
+use super::show::ShowRequest;
+use crate::flags::FrameArgs;
 use crate::overlay::OverlayKind;
 
 /// Flags of `render`.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// The scene.
+    /// What to draw.
     #[command(flatten)]
-    pub(crate) scene: SceneArgs,
-    /// Technique (see `gnomon techniques`)
-    #[arg(long, value_name = "NAME", default_value = "shadow-volumes")]
-    pub(crate) technique: String,
-    /// A parameter of the technique; may be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse_setting)]
-    pub(crate) settings: Vec<(String, String)>,
-    /// Image size in pixels [default: the scene file's, or else 800x600]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
-    pub(crate) size: Option<[u32; 2]>,
+    pub(crate) frame: FrameArgs,
     /// Picture to write [default: out/SCENE-TECHNIQUE.png]; with --frames the folder
     /// of frame-0000.png and so on [default: out/SCENE-TECHNIQUE]
     #[arg(long, value_name = "FILE.png|DIR")]
@@ -34,21 +24,15 @@ pub(crate) struct RenderArgs {
     /// Also write explaining pictures beside the render, as OUT-OVERLAY.png
     #[arg(long, value_name = "OVERLAY", value_enum, value_delimiter = ',')]
     pub(crate) overlay: Vec<OverlayKind>,
+    /// Also write what a buffer holds, after a pass or a draw or at the end, by labels or
+    /// numbers (`gnomon record` and `dump` list them); .depth or .stencil, :MIP and :LAYER
+    /// may stand behind the buffer. PNG has a legend, EXR and NPY all digits [default file:
+    /// beside the render]; may be repeated
+    #[arg(long, value_name = "BUFFER[@PASS[/DRAW]][=FILE]", value_parser = ShowRequest::parse)]
+    pub(crate) show: Vec<ShowRequest>,
     /// Frames to time; the median is reported
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) repeat: u32,
-    /// The time of animated scenes, in seconds: of the picture, or of the first frame
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_time, allow_negative_numbers = true)]
-    pub(crate) time: f64,
-    /// Render that many frames of an animation, each afresh
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub(crate) frames: Option<u32>,
-    /// Frames per second of an animation [default: 24]
-    #[arg(long, value_name = "F", value_parser = parse_rate, requires = "frames")]
-    pub(crate) fps: Option<f64>,
-    /// How to execute.
-    #[command(flatten)]
-    pub(crate) gpu: GpuArgs,
     /// Print one JSON document on stdout, the summary on stderr
     #[arg(long)]
     pub(crate) json: bool,
@@ -59,12 +43,6 @@ pub(crate) struct RenderArgs {
     /// Also print what each draw counted, in full numbers, in the order of submission
     #[arg(long, conflicts_with = "frames")]
     pub(crate) draws: bool,
-    /// A map that lights the scene.
-    #[command(flatten)]
-    pub(crate) environment: EnvArgs,
-    /// Most area lights fitted to the map, 1 to 1024 [default: 30]
-    #[arg(long, value_name = "N", requires = "env")]
-    pub(crate) lights: Option<usize>,
 }
 
 /// What has work of its own in the JSON document.

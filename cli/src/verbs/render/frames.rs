@@ -11,7 +11,7 @@ use gnomon_pipeline::techniques::Registry;
 use serde::Serialize;
 
 use super::args::RenderArgs;
-use super::job::{self, RenderJob, default_out, source};
+use super::job::{self, RenderJob, default_out};
 use super::write::write;
 use crate::error::CliError;
 use crate::output;
@@ -21,9 +21,6 @@ use crate::output::numbers;
 use crate::output::progress::Progress;
 use crate::output::tables::{self, Table};
 use crate::output::warnings;
-
-/// Frames per second where none are given.
-pub(crate) const RATE: f64 = 24.0;
 
 #[derive(Serialize)]
 struct FramesDocument {
@@ -44,18 +41,17 @@ struct FrameDocument {
 /// Renders `count` frames.
 pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<(), CliError> {
     check(args)?;
-    let rate = args.fps.unwrap_or(RATE);
-    check_times(args, count, rate)?;
-    let technique = registry.find(&args.technique)?;
+    args.frame.check_times(count)?;
+    let technique = registry.find(&args.frame.technique)?;
     job::check_wedges(args, technique, registry)?;
-    let params = crate::verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
-    let mut source = source(args)?;
+    let params = args.frame.params(technique)?;
+    let mut source = args.frame.source()?;
     let progress = Progress::new(u64::from(count) * (2 + args.overlay.len() as u64));
     let mut table = Table::new("Frames", &["frame", "time", "took", "bytes", "color"]);
     let (mut frames, mut last) = (Vec::new(), None);
     for frame in 0..count {
         progress.doing(format!("frame {frame}"));
-        let time = time_of(frame, args.time, rate);
+        let time = args.frame.time_of(frame);
         let scene = source.at(time)?;
         let folder = choose_folder(args, &scene.name);
         let out = folder.join(format!("frame-{frame:04}.png"));
@@ -81,7 +77,7 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         output::print_json(&FramesDocument {
             scene: job.scene.name.clone(),
             technique: technique.name(),
-            fps: rate,
+            fps: args.frame.rate(),
             frames,
         })?;
     }
@@ -103,24 +99,8 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
     }
 }
 
-fn time_of(frame: u32, start: f64, rate: f64) -> f64 {
-    start + f64::from(frame) / rate
-}
-
-/// Frames that are very long may leave the range of numbers.
-fn check_times(args: &RenderArgs, count: u32, rate: f64) -> Result<(), CliError> {
-    if time_of(count - 1, args.time, rate).is_finite() {
-        return Ok(());
-    }
-    Err(CliError::Flag {
-        flag: "--fps",
-        value: rate.to_string(),
-        valid: "the time of the last frame is not finite: give more frames per second".to_owned(),
-    })
-}
-
 fn choose_folder(args: &RenderArgs, scene: &str) -> PathBuf {
-    let by_default = || default_out(scene, &args.technique).with_extension("");
+    let by_default = || default_out(scene, &args.frame.technique).with_extension("");
     args.out.clone().unwrap_or_else(by_default)
 }
 

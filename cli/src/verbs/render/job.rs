@@ -6,7 +6,7 @@ use gnomon_pipeline::measure::heat::{self, Heat};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered};
 use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
 use gnomon_pipeline::techniques::Registry;
-use gnomon_pipeline::world::scene::{Scene, SceneSource};
+use gnomon_pipeline::world::scene::Scene;
 
 use super::args::{Per, RenderArgs};
 use crate::error::CliError;
@@ -14,8 +14,6 @@ use crate::output::files;
 use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
 use crate::overlay::{self, OverlayKind};
 use crate::verbs;
-
-pub(crate) const DEFAULT_SIZE: [u32; 2] = [800, 600];
 
 /// Everything the command line asked for, checked.
 pub(super) struct RenderJob {
@@ -30,16 +28,16 @@ pub(super) struct RenderJob {
 
 impl RenderJob {
     pub(super) fn new(args: &RenderArgs, registry: &Registry) -> Result<Self, CliError> {
-        let technique = registry.find(&args.technique)?;
+        let technique = registry.find(&args.frame.technique)?;
         check_wedges(args, technique, registry)?;
-        let params = verbs::parameters(technique, &args.settings, args.gpu.no_skip)?;
+        let params = args.frame.params(technique)?;
         if let Some(out) = &args.out {
             files::check_extension("--out", out, "png")?;
         }
         if let Some(visibility) = &args.visibility {
             files::check_extension("--visibility", visibility, "npy")?;
         }
-        let scene = source(args)?.at(args.time)?;
+        let scene = args.frame.source()?.at(args.frame.time)?;
         Self::of(args, technique, params, scene, args.out.clone())
     }
 
@@ -52,7 +50,7 @@ impl RenderJob {
         out: Option<PathBuf>,
     ) -> Result<Self, CliError> {
         check_overlays(args, &scene)?;
-        let size = args.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
+        let size = args.frame.size_of(&scene);
         let out = out.unwrap_or_else(|| default_out(&scene.name, technique.name()));
         files::check_target(&out)?;
         Ok(Self {
@@ -61,7 +59,7 @@ impl RenderJob {
             params,
             settings: RenderSettings {
                 size,
-                gpu: args.gpu.config(),
+                gpu: args.frame.gpu.config(),
                 repeat: args.repeat,
             },
             overlays: overlay_paths(&args.overlay, &out),
@@ -107,12 +105,6 @@ impl RenderJob {
             &self.settings,
         )?))
     }
-}
-
-/// Scenes by time, under the environment that was asked for.
-pub(super) fn source(args: &RenderArgs) -> Result<SceneSource, CliError> {
-    let request = args.environment.request(args.lights);
-    Ok(args.scene.open()?.with_environment(request))
 }
 
 /// Refuses an overlay of what the scene does not have.

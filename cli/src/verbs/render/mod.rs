@@ -4,9 +4,8 @@ mod args;
 mod frames;
 mod job;
 mod run;
+mod show;
 mod write;
 
 pub(crate) use args::RenderArgs;
-pub(crate) use frames::RATE;
-pub(crate) use job::DEFAULT_SIZE;
 pub(crate) use run::run;

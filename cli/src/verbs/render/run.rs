@@ -16,7 +16,7 @@ use crate::output::{self, draws, numbers, warnings};
 
 /// Renders one frame, or an animation, and writes what was asked for.
 pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError> {
-    if let Some(count) = args.frames {
+    if let Some(count) = args.frame.frames {
         return frames::run(args, registry, count);
     }
     let progress = Progress::new(3 + args.overlay.len() as u64);

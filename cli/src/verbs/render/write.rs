@@ -6,6 +6,7 @@ use gnomon_pipeline::measure::render::Rendered;
 
 use super::args::RenderArgs;
 use super::job::RenderJob;
+use super::show::show;
 use crate::error::CliError;
 use crate::output::files::Batch;
 use crate::output::json::FileDocument;
@@ -57,6 +58,14 @@ pub(super) fn write(
             &png::encode(&overlay::draw(*kind, &source)),
         )?;
         progress.step();
+    }
+    if !args.show.is_empty() {
+        let frame = (job.technique).frame(&job.scene, job.settings.size, &job.params)?;
+        for request in &args.show {
+            progress.doing(format!("showing {}", request.text()));
+            let bytes = show(&frame.recording, request, job.settings.gpu)?;
+            stage("show", &request.path(&job.out)?, &bytes)?;
+        }
     }
     batch.commit()?;
     Ok(written)

@@ -1,19 +1,21 @@
 //! Replays and says what differs.
 
-use gnomon_traces::{ReplayDepth, Replayed, Trace, replay};
+use gnomon_traces::{ReplayDepth, Replayed, replay};
 
 use super::args::ReplayArgs;
 use super::picture::picture;
 use crate::error::CliError;
 use crate::output::files::{Batch, check_extension};
 use crate::output::{self, numbers, png};
+use crate::traces::TraceFile;
 
 /// Replays one frame or all; a difference is an error of its own.
 pub(crate) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if let Some(out) = &args.out {
         check_extension("--out", out, "png")?;
     }
-    let trace = Trace::open(&args.trace)?;
+    let file = TraceFile::open(&args.trace)?;
+    let trace = file.trace();
     let frames = match args.frame {
         Some(frame) => frame..frame.saturating_add(1),
         None => 0..trace.frames(),
@@ -35,7 +37,8 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     };
     let mut text = String::new();
     for frame in frames.clone() {
-        let replayed = replay(&trace, frame, &table, args.gpu.config(), depth)?;
+        let replayed = replay(trace, frame, &table, args.gpu.config(), depth);
+        let replayed = file.named(replayed)?;
         write(args, &replayed, frame)?;
         let name = match frames.len() {
             1 => String::new(),

@@ -19,8 +19,8 @@ use gnomon_traces::report::FrameReport;
 use super::args::ReportArgs;
 use crate::draw::Picture;
 use crate::error::CliError;
+use crate::flags::parameters;
 use crate::overlay;
-use crate::verbs;
 use crate::verbs::compare::EntryArg;
 
 /// A frame and what the page shows of it.
@@ -80,7 +80,7 @@ pub(super) fn entries(args: &ReportArgs, registry: &Registry) -> Result<Vec<Entr
             label: std::iter::once(arg.technique.clone())
                 .chain(settings)
                 .collect(),
-            params: verbs::parameters(technique, &arg.settings, args.gpu.no_skip)?,
+            params: parameters(technique, &arg.settings, args.gpu.no_skip)?,
             technique,
         })
     };

@@ -9,11 +9,10 @@ use super::args::ReportArgs;
 use super::measure::{self, Observe, Subject};
 use super::{page, trace};
 use crate::error::CliError;
+use crate::flags::DEFAULT_SIZE;
 use crate::output::files::{self, Batch};
 use crate::output::progress::Progress;
 use crate::output::{self, png};
-
-const DEFAULT_SIZE: [u32; 2] = [800, 600];
 
 /// Draws, observes, and writes the page.
 pub(crate) fn run(args: &ReportArgs, registry: &Registry) -> Result<(), CliError> {

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use gnomon_pipeline::measure::render::{SrgbEncoder, hash};
 use gnomon_raster::{Gpu, Recording, Subresource, TextureId};
-use gnomon_traces::{Meta, Trace};
+use gnomon_traces::Meta;
 
 use super::args::ReportArgs;
 use super::measure::{Observe, Subject, refuse_gpu};
 use crate::draw::Picture;
 use crate::error::CliError;
+use crate::traces::TraceFile;
 
 /// Whether the page is of a recorded frame.
 pub(super) fn is_trace(args: &ReportArgs) -> bool {
@@ -37,16 +38,17 @@ fn check(args: &ReportArgs) -> Result<(), CliError> {
 /// The frame that `args` name: its scene's name, and what the page shows of it.
 pub(super) fn subject(args: &ReportArgs, how: &Observe<'_>) -> Result<(String, Subject), CliError> {
     check(args)?;
-    let trace = Trace::open(&args.scene.scene)?;
-    let recording = trace.recording(args.frame, &gnomon_shaders::table())?;
+    let file = TraceFile::open(Path::new(&args.scene.scene))?;
+    let recording = file.frame(args.frame)?;
     let image = output(&recording)?;
-    let (picture, ms) = draw(&recording, image, how)?;
-    let meta = trace.meta();
-    let mut subject = Subject::observe(label(meta, args.frame), &recording, image, how)?;
+    let (picture, ms) = file.drawn(args.frame, || draw(&recording, image, how))??;
+    let meta = file.trace().meta();
+    let observe = || Subject::observe(label(meta, args.frame), &recording, image, how);
+    let mut subject = file.drawn(args.frame, observe)??;
     let bytes = picture.pixels.iter().flatten().copied();
     subject.hashes = vec![
         ("Picture".to_owned(), hash(picture.size, bytes)),
-        ("Trace".to_owned(), trace.id()?),
+        ("Trace".to_owned(), file.named(file.trace().id())?),
         ("Recorded settings".to_owned(), recorded_settings(meta)),
     ];
     subject.picture = picture;

@@ -24,7 +24,7 @@ pub(crate) struct TrafficArgs {
     /// The frame, from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) frame: usize,
-    /// Judge tilers also as if passes that go on in the same attachments were one
+    /// Judge tilers also with passes merged, as far as their attachments allow
     #[arg(long)]
     pub(crate) per_pass_merged: bool,
     /// Write rows (.csv), or dram bytes of tiles or pixels of one profile (.npy)

@@ -1,6 +1,6 @@
 //! Traffic as rows, for JSON, CSV and tables.
 
-use gnomon_traces::profile::{Client, Levels, Traffic, TrafficRow};
+use gnomon_traces::profile::{Client, Levels, PassMerge, Traffic, TrafficRow};
 use serde::Serialize;
 
 use super::args::By;
@@ -12,8 +12,18 @@ pub(crate) struct TrafficDocument {
     pub(crate) by: &'static str,
     /// Textures have cache and dram bytes; otherwise look-ups were not recorded.
     pub(crate) texels_recorded: bool,
+    /// Of tilers with `--per-pass-merged`: which passes go on in the tiles of those before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) merges: Option<Vec<MergeDocument>>,
     pub(crate) rows: Vec<RowDocument>,
     pub(crate) totals: Levels,
+}
+
+#[derive(Serialize)]
+pub(crate) struct MergeDocument {
+    pub(crate) key: String,
+    pub(crate) merged: bool,
+    pub(crate) refused_reason: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -31,14 +41,26 @@ pub(crate) struct HizDocument {
 }
 
 impl TrafficDocument {
-    pub(crate) fn new(trace: &str, traffic: &Traffic, by: By) -> Self {
+    /// `merged`: passes were allowed to go on in the tiles of those before.
+    pub(crate) fn new(trace: &str, traffic: &Traffic, by: By, merged: bool) -> Self {
         Self {
             trace: trace.to_owned(),
             profile: traffic.profile.clone(),
             by: by.name(),
             texels_recorded: traffic.texels_recorded,
+            merges: merged.then(|| traffic.merges.iter().map(MergeDocument::new).collect()),
             rows: rows(traffic, by),
             totals: traffic.total(),
+        }
+    }
+}
+
+impl MergeDocument {
+    fn new(merge: &PassMerge) -> Self {
+        Self {
+            key: format!("{} {}", merge.pass, merge.label),
+            merged: merge.refused.is_none(),
+            refused_reason: merge.refused.as_ref().map(|r| r.to_string()),
         }
     }
 }

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use gnomon_traces::FrameShape;
 use gnomon_traces::profile::{Judge, JudgeOptions, Order, Profile, ProfileError, profile};
 use gnomon_traces::profile::{PROFILES, Traffic};
-use gnomon_traces::{FrameShape, Trace};
 
 use super::args::{By, TrafficArgs};
 use super::document::TrafficDocument;
@@ -14,6 +14,7 @@ use super::table;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::Batch;
+use crate::traces::TraceFile;
 
 /// Judges, writes and prints.
 pub(crate) fn run(args: &TrafficArgs) -> Result<(), CliError> {
@@ -24,14 +25,13 @@ pub(crate) fn run(args: &TrafficArgs) -> Result<(), CliError> {
     let kind = out
         .map(|path| kind(path, args.by, runs.len()))
         .transpose()?;
-    let trace = Trace::open(&args.trace)?;
-    let shape = trace.shape(args.frame)?;
-    let judged = runs.iter().map(|(p, o)| judge(args, &trace, &shape, p, *o));
+    let file = TraceFile::open(&args.trace)?;
+    let shape = file.shape(args.frame)?;
+    let judged = runs.iter().map(|(p, o)| judge(args, &file, &shape, p, *o));
     let judged: Vec<Traffic> = judged.collect::<Result<_, _>>()?;
     let name = args.trace.display().to_string();
-    let documents = judged
-        .iter()
-        .map(|t| TrafficDocument::new(&name, t, args.by));
+    let documents = judged.iter().zip(&runs);
+    let documents = documents.map(|(t, (_, o))| TrafficDocument::new(&name, t, args.by, o.merged));
     let documents: Vec<TrafficDocument> = documents.collect();
     if let (Some(path), Some(kind)) = (out, kind) {
         let mut batch = Batch::default();
@@ -74,13 +74,13 @@ fn runs<'a>(args: &TrafficArgs, profiles: &'a [Profile]) -> Vec<(&'a Profile, Ju
 
 fn judge(
     args: &TrafficArgs,
-    trace: &Trace,
+    file: &TraceFile<'_>,
     shape: &FrameShape,
     profile: &Profile,
     options: JudgeOptions,
 ) -> Result<Traffic, CliError> {
     let mut judge = Judge::with_options(profile, shape, options)?;
-    trace.events(args.frame, &mut judge)?;
+    file.named(file.trace().events(args.frame, &mut judge))?;
     let mut traffic = judge.finish();
     if options.merged {
         traffic.profile += " (passes merged)";

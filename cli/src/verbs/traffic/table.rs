@@ -60,6 +60,14 @@ fn notes(document: &TrafficDocument) -> String {
         }
         last = Some(&row.key);
     }
+    for merge in document.merges.iter().flatten() {
+        let said = merge.refused_reason.as_deref();
+        let said = said.map_or_else(
+            || "goes on in the tiles of the passes before".to_owned(),
+            |reason| format!("begins tiles of its own: {reason}"),
+        );
+        notes += &format!("pass {} {said}\n", merge.key);
+    }
     if !document.texels_recorded {
         notes += "no look-ups were recorded: textures have no cache and dram bytes\n";
     }

@@ -1,11 +1,12 @@
 //! Cuts, and writes what is still what it was.
 
-use gnomon_traces::{Keep, Trace, trim};
+use gnomon_traces::{Keep, trim};
 
 use super::args::TrimArgs;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::{Batch, check_extension};
+use crate::traces::TraceFile;
 use crate::verbs::info::TraceDocument;
 
 /// Writes the trace that is asked for, or nothing.
@@ -23,8 +24,9 @@ pub(crate) fn run(args: &TrimArgs) -> Result<(), CliError> {
             });
         }
     };
-    let trace = Trace::open(&args.trace)?;
-    let shorter = trim(&trace, &keep, &gnomon_shaders::table(), args.gpu.config())?;
+    let file = TraceFile::open(&args.trace)?;
+    let table = gnomon_shaders::table();
+    let shorter = file.named(trim(file.trace(), &keep, &table, args.gpu.config()))?;
     let mut batch = Batch::default();
     batch.stage(&args.out, shorter.to_bytes())?;
     batch.commit()?;

@@ -35,7 +35,7 @@ use gnomon_shaders::light_view::{Projection, ViewRegion};
 use fit::Fit;
 pub(crate) use fit::{FitTo, Fitted, Fitting};
 pub(crate) use frame::{LightExtent, LightFrame, ViewedLight};
-pub(crate) use picture::{CasterGeometry, LightMap};
+pub(crate) use picture::{CasterGeometry, LightMap, PictureTarget};
 pub(crate) use reads::Reads;
 pub(crate) use surroundings::Surroundings;
 

@@ -1,13 +1,16 @@
 //! A view as a render pass, and as shaders find positions in it.
 
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
 use glam::DVec3;
+use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
     DepthStencilAttachment, Draw, Format, IndexBuffer, LoadOp, Recording, RenderPass,
     RenderPipeline, StoreOp, Subresource, TextureDescriptor, TextureId, VertexBuffer,
 };
+use gnomon_shaders::cones::patches::PatchPicture;
 use gnomon_shaders::light_view::{DepthRange, LightMapping, PlanarDepth, Projection, ViewRegion};
 use gnomon_shaders::shadow_maps::ReceiverPlanes;
 use gnomon_shaders::surface::PixelRays;
@@ -110,6 +113,16 @@ fn facets(mesh: &Mesh, view: &View, reference: DVec3) -> VertexBuffer {
     VertexBuffer { data, stride: 7 }
 }
 
+/// Where a picture goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PictureTarget {
+    pub(crate) color: TextureId,
+    /// Where nothing is in the way.
+    pub(crate) clear: [f32; 4],
+    /// A depth buffer of the picture's size, of which nothing is kept.
+    pub(crate) buffer: TextureId,
+}
+
 impl Fitted {
     /// Draws the casters into `map`; those outside the picture too, unless `skip`.
     pub(crate) fn pass(
@@ -120,18 +133,56 @@ impl Fitted {
         map: &LightMap,
         skip: bool,
     ) -> RenderPass {
-        let shader = PlanarDepth {
-            rays: self.rays(geometry.reference, map.size),
+        let target = PictureTarget {
+            color: map.depth,
+            clear: [1.0; 4],
+            buffer: map.buffer,
+        };
+        let shader = self.planar_depth(geometry, map.size, map.slope).stage();
+        self.pass_by(shader, label, geometry, view, &target, skip)
+    }
+
+    /// Linear planar depth, pushed away from the light by `slope` texels.
+    fn planar_depth(&self, geometry: &CasterGeometry, size: u32, slope: f64) -> PlanarDepth {
+        PlanarDepth {
+            rays: self.rays(geometry.reference, size),
             projection: self.frame.projection,
             base: self.base as f32,
             range: self.depth_range(),
-            slope: map.slope as f32,
-            slope_limit: (self.texel_at_far(map.size) * SLOPE_LIMIT) as f32,
-        };
+            slope: slope as f32,
+            slope_limit: (self.texel_at_far(size) * SLOPE_LIMIT) as f32,
+        }
+    }
+
+    /// Places and radii of micro-patches, relative to the origin of `view`.
+    pub(crate) fn patches(
+        &self,
+        geometry: &CasterGeometry,
+        view: &View,
+        size: u32,
+    ) -> PatchPicture {
+        PatchPicture {
+            depth: self.planar_depth(geometry, size, 0.0),
+            reference: narrow(view.relative(geometry.reference)),
+            half_diagonal: (self.texel(size) * FRAC_1_SQRT_2) as f32,
+        }
+    }
+
+    /// Draws the casters into `target` by a shader of a technique's own, with the
+    /// varyings of [`Facets`].
+    pub(crate) fn pass_by(
+        &self,
+        shader: FragmentStage,
+        label: String,
+        geometry: &CasterGeometry,
+        view: &View,
+        target: &PictureTarget,
+        skip: bool,
+    ) -> RenderPass {
         let pipeline = Arc::new(RenderPipeline {
             label: "light view".into(),
             vertex: Facets(self.clip_from_world(view)).stage(),
-            fragment: Some(shader.stage()),
+            fragment: Some(shader),
             primitive: PrimitiveState::default(),
             depth_stencil: DepthStencilState::opaque(),
             color_targets: vec![ColorTargetState::OPAQUE],
@@ -139,9 +190,9 @@ impl Fitted {
         let casters = geometry.casters.iter();
         RenderPass {
             label,
-            color: vec![attachment(map.depth, LoadOp::Clear([1.0; 4]))],
+            color: vec![attachment(target.color, LoadOp::Clear(target.clear))],
             depth_stencil: Some(DepthStencilAttachment {
-                texture: map.buffer,
+                texture: target.buffer,
                 subresource: Subresource::default(),
                 depth_load: LoadOp::Clear(1.0),
                 depth_store: StoreOp::Discard,

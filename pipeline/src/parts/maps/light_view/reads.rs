@@ -1,6 +1,8 @@
 //! What of a picture receivers read when they filter over what lies between them and
 //! the light.
 
+use glam::DVec3;
+
 use super::convex::place_of;
 use super::fit::{Fitted, receivers_beyond};
 use super::frame::LightExtent;
@@ -43,6 +45,35 @@ impl Fitted {
             }
         });
         reads
+    }
+}
+
+impl Fitted {
+    /// How much wider than it is a ball of this radius would have to be, so that where
+    /// cones from receivers to it cut planes across the view follows from similar
+    /// triangles: the largest 1/cos(ψ + θ) of angles off the view's axis and half angles
+    /// of cones, no more than `most`.
+    pub(crate) fn widening(&self, around: &Surroundings<'_>, radius: f64, most: f64) -> f64 {
+        let mut widening = 1.0f64;
+        receivers_beyond(around, &self.frame, self.region, self.range[0], |polygon| {
+            let nearest = polygon.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+            let sine = radius / nearest;
+            let tangent = |p: &DVec3| p.truncate().length() / p.z;
+            let steepest = polygon.iter().map(tangent).fold(0.0, f64::max);
+            if polygon.is_empty() {
+                return;
+            }
+            let cosine = 1.0 / (1.0 + steepest * steepest).sqrt();
+            // cos ψ cos θ − sin ψ sin θ.
+            let both = cosine * ((1.0 - sine * sine).max(0.0).sqrt() - steepest * sine);
+            let own = if sine < 1.0 && both > 0.0 {
+                1.0 / both
+            } else {
+                most
+            };
+            widening = widening.max(own);
+        });
+        widening.min(most)
     }
 }
 

@@ -17,7 +17,7 @@ use gnomon_shaders::shadow_maps::{Shadow, ShadowTo};
 use gnomon_shaders::transform::FullScreen;
 
 pub(crate) use notes::{Hints, MapNotes, ViewsOfLight};
-pub(crate) use settings::{MapSettings, Margin, ViewSettings};
+pub(crate) use settings::{MAP_SIZE, MapSettings, Margin, SKIP, ViewSettings};
 
 use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
 use super::lit_tiles::{FurtherLights, LitTiles};

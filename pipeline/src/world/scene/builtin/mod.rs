@@ -16,6 +16,7 @@ mod soft_errors;
 mod spheres;
 mod statue;
 mod walk;
+mod wireframe;
 
 use super::Scene;
 use crate::world::error::{UnknownScene, nearest};
@@ -76,6 +77,7 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("creature", "biped of 15 overlapping closed parts", creature::scene),
     moving("walk", "animated: a creature walks round, a ball bounces, a knot and a beam turn (8 s)", walk::scene),
     entry("statue", "a figure of 70,000 triangles with folds and cavities on a pedestal", statue::scene),
+    entry("wireframe", "a ball of 1,920 wires with more than 10,000 silhouette edges under a sphere", wireframe::scene),
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),
     entry("adversarial-near-plane", "the near plane cuts a volume: z-pass needs depth clamp", adversarial::near_plane),

@@ -1,0 +1,91 @@
+//! Which frames: a scene, a technique, a size, a time.
+
+use clap::Args;
+use gnomon_pipeline::technique::{Params, Technique, TechniqueError};
+use gnomon_pipeline::world::scene::{Scene, SceneError, SceneSource};
+
+use super::{
+    EnvArgs, GpuArgs, SceneArgs, parameters, parse_rate, parse_setting, parse_size, parse_time,
+};
+use crate::error::CliError;
+
+/// The size of pictures of scenes that ask for none.
+pub(crate) const DEFAULT_SIZE: [u32; 2] = [800, 600];
+/// Frames per second of an animation, unless told otherwise.
+pub(crate) const RATE: f64 = 24.0;
+
+/// What to draw, and how.
+#[derive(Debug, Args)]
+pub(crate) struct FrameArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Technique (see `gnomon techniques`)
+    #[arg(long, value_name = "NAME", default_value = "shadow-volumes")]
+    pub(crate) technique: String,
+    /// A parameter of the technique; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse_setting)]
+    pub(crate) settings: Vec<(String, String)>,
+    /// Image size in pixels [default: the scene file's, or else 800x600]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// The time of animated scenes, in seconds: of the picture, or of the first frame
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_time, allow_negative_numbers = true)]
+    pub(crate) time: f64,
+    /// That many frames of an animation, each afresh
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) frames: Option<u32>,
+    /// Frames per second of an animation [default: 24]
+    #[arg(long, value_name = "F", value_parser = parse_rate, requires = "frames")]
+    pub(crate) fps: Option<f64>,
+    /// How to execute.
+    #[command(flatten)]
+    pub(crate) gpu: GpuArgs,
+    /// A map that lights the scene.
+    #[command(flatten)]
+    pub(crate) environment: EnvArgs,
+    /// Most area lights fitted to the map, 1 to 1024 [default: 30]
+    #[arg(long, value_name = "N", requires = "env")]
+    pub(crate) lights: Option<usize>,
+}
+
+impl FrameArgs {
+    /// Scenes by time, under the environment that was asked for.
+    pub(crate) fn source(&self) -> Result<SceneSource, SceneError> {
+        let request = self.environment.request(self.lights);
+        Ok(self.scene.open()?.with_environment(request))
+    }
+
+    /// The parameters of `technique` that were given.
+    pub(crate) fn params(&self, technique: &dyn Technique) -> Result<Params, TechniqueError> {
+        parameters(technique, &self.settings, self.gpu.no_skip)
+    }
+
+    /// As asked for, or as the scene wants it.
+    pub(crate) fn size_of(&self, scene: &Scene) -> [u32; 2] {
+        self.size.or(scene.size).unwrap_or(DEFAULT_SIZE)
+    }
+
+    /// Frames per second.
+    pub(crate) fn rate(&self) -> f64 {
+        self.fps.unwrap_or(RATE)
+    }
+
+    /// The time of frame number `frame`.
+    pub(crate) fn time_of(&self, frame: u32) -> f64 {
+        self.time + f64::from(frame) / self.rate()
+    }
+
+    /// Frames that are very long may leave the range of numbers.
+    pub(crate) fn check_times(&self, count: u32) -> Result<(), CliError> {
+        if self.time_of(count - 1).is_finite() {
+            return Ok(());
+        }
+        Err(CliError::Flag {
+            flag: "--fps",
+            value: self.rate().to_string(),
+            valid: "the time of the last frame is not finite: give more frames per second"
+                .to_owned(),
+        })
+    }
+}

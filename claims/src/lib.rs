@@ -130,11 +130,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-<<<<<<< HEAD
-    let papers: [&'static [Claim]; 9] = [
-=======
-    let papers: [&'static [Claim]; 10] = [
->>>>>>> main
+    let papers: [&'static [Claim]; 11] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,

@@ -121,13 +121,14 @@ fn quality(
     let mut measures = Vec::new();
     for (i, lights) in lights.iter().enumerate() {
         for (j, side) in sizes.iter().enumerate() {
-            let set = [format!("lights={lights}"), format!("map-size={side}")];
+            let (lights, side) = (format!("lights={lights}"), format!("map-size={side}"));
+            let set = [lights.clone(), side.clone(), "extent=region".to_owned()];
             let set = set.each_ref().map(|s| &**s);
             let done = lab.plain(&scene, TECHNIQUE, &set, size)?;
             let reference = lab.sky(&scene, &map, size, directions);
             let score = RadianceScore::measure(reference, &done)?;
             errors[i][j] = score.relative_rmse;
-            let what = format!("{lights} lights, maps of {side}x{side}: RMSE");
+            let what = format!("{lights}, {side}: RMSE");
             measures.push(Measure::beside(what, "-", score.relative_rmse, Unit::Share));
         }
     }

@@ -57,11 +57,8 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &Pcss,
         &ShadowMapsN,
         &ConvolutionSoftShadows,
-<<<<<<< HEAD
         &DeferredShadowing,
-=======
         &ConeCulling,
->>>>>>> main
         &MixedLights,
     ];
     LIST

@@ -387,20 +387,22 @@ const VOLUMES: [&str; 3] = ["unshadowed", "shadow-volumes", "sampled-shadow-volu
 const WEDGES: [&str; 2] = ["penumbra-wedges", "penumbra-wedges-restructured"];
 const SOFT: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
 const MAPS: [&str; 4] = ["shadow-map", "pcf", "pcss", "shadow-maps-n"];
-<<<<<<< HEAD
 const DEFERRED: &str = "deferred-shadowing";
-=======
 const CONES: [&str; 1] = ["cone-culling"];
->>>>>>> main
 const OTHERS: [&str; 2] = ["convolution-soft-shadows", "mixed-lights"];
 
 #[test]
 fn no_technique_is_left_out() {
-<<<<<<< HEAD
-    let checked = [&VOLUMES[..], &WEDGES, &SOFT, &MAPS, &OTHERS, &[DEFERRED]].concat();
-=======
-    let checked = [&VOLUMES[..], &WEDGES, &SOFT, &MAPS, &CONES, &OTHERS].concat();
->>>>>>> main
+    let checked = [
+        &VOLUMES[..],
+        &WEDGES,
+        &SOFT,
+        &MAPS,
+        &CONES,
+        &OTHERS,
+        &[DEFERRED],
+    ]
+    .concat();
     for technique in techniques::all() {
         assert!(checked.contains(&technique.name()), "{}", technique.name());
     }

@@ -61,8 +61,8 @@ choices! {
 
 const EXTENT: Param<Extent> = Param::choice(
     "extent",
-    Extent::Region.word(),
-    "width of the square that stands for a light: its region's solid angle (the paper's), or that over which its luminance is spread",
+    Extent::Spread.word(),
+    "width of the square that stands for a light: the solid angle over which its luminance is spread, or that of its region (the paper's)",
 )
 .when(REGIONS);
 

@@ -12,6 +12,7 @@ pub(super) struct Found {
     vertices: usize,
     transport_bytes: usize,
     rays: u64,
+    buried: u64,
     lights: usize,
     map_bytes: usize,
     /// Vertices times lights at which transport rang below 0.
@@ -26,6 +27,7 @@ impl Found {
             vertices: sides().map(|t| t.vertices()).sum(),
             transport_bytes: sides().map(|t| t.diffuse_bytes()).sum(),
             rays: sides().map(|t| t.rays).sum(),
+            buried: sides().map(|t| t.buried).sum(),
             ..Self::default()
         }
     }
@@ -48,6 +50,7 @@ impl Found {
             ("transport vertices", self.vertices),
             ("transport bytes", self.transport_bytes),
             ("transport rays", self.rays as usize),
+            ("vertices inside their object", self.buried as usize),
             ("occlusion maps", self.maps.maps),
             ("occlusion map bytes", self.maps.maps * self.map_bytes),
             ("maps across their plane", self.maps.across_plane),

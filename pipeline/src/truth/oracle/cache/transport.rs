@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | 8 | `GNOMPRT` and a line feed |
 //! | 4 | format version, 1 |
-//! | 8 | number of rays that were cast |
+//! | 8, 8 | numbers of rays that were cast, and of vertices inside the object |
 //! | 32 | the hash that is its name |
 //! | 4 per coefficient | diffuse ones, then glossy ones, vertex after vertex |
 //! | 32 | BLAKE3 hash of all before |
@@ -23,7 +23,7 @@ use crate::world::files::{self, FileError};
 
 const MAGIC: &[u8; 8] = b"GNOMPRT\n";
 const FORMAT_VERSION: u32 = 1;
-const HEADER: usize = 8 + 4 + 8 + 32;
+const HEADER: usize = 8 + 4 + 8 + 8 + 32;
 const CHECKSUM: usize = 32;
 
 /// Transport and how it was come by.
@@ -104,6 +104,7 @@ fn encode(key: &TransportKey, transport: &Transport) -> Vec<u8> {
     let mut bytes = Vec::from(*MAGIC);
     bytes.extend(FORMAT_VERSION.to_le_bytes());
     bytes.extend(transport.rays.to_le_bytes());
+    bytes.extend(transport.buried.to_le_bytes());
     bytes.extend(key.bytes());
     let all = transport.diffuse.iter().chain(&transport.glossy);
     bytes.extend(all.flat_map(|v| v.to_le_bytes()));
@@ -128,19 +129,22 @@ fn read(
         }
         Err(e) => return Err(e.to_string()),
     };
-    decode(&bytes, length, key).map(|(rays, mut values)| {
+    decode(&bytes, length, key).map(|([rays, buried], mut values)| {
         let glossy = values.split_off(counts[0]);
         Some(Transport {
             settings,
             diffuse: values,
             glossy,
             rays,
+            buried,
         })
     })
 }
 
-/// Rays and coefficients.
-fn decode(bytes: &[u8], length: usize, key: &TransportKey) -> Result<(u64, Vec<f32>), String> {
+/// Rays and buried vertices, and coefficients.
+type Decoded = ([u64; 2], Vec<f32>);
+
+fn decode(bytes: &[u8], length: usize, key: &TransportKey) -> Result<Decoded, String> {
     if !bytes.starts_with(MAGIC) {
         return Err("not transport".into());
     }
@@ -158,13 +162,13 @@ fn decode(bytes: &[u8], length: usize, key: &TransportKey) -> Result<(u64, Vec<f
             "format {version}, but this is for format {FORMAT_VERSION}"
         ));
     }
-    if content[20..HEADER] != key.bytes() {
+    if content[28..HEADER] != key.bytes() {
         return Err("transport of something else".into());
     }
-    let rays = u64::from(number(12)) | u64::from(number(16)) << 32;
+    let long = |at: usize| u64::from(number(at)) | u64::from(number(at + 4)) << 32;
     let values = content[HEADER..].as_chunks::<4>().0;
     Ok((
-        rays,
+        [long(12), long(20)],
         values.iter().map(|v| f32::from_le_bytes(*v)).collect(),
     ))
 }

@@ -12,9 +12,15 @@
 //! directions of a spherical Fibonacci lattice, the same for all vertices, that meet a
 //! triangle. What hides nothing of itself has exact coefficients and casts no ray.
 //!
+//! A vertex inside its own object (meshes of parts that overlap have such) sees nothing,
+//! and would darken what lies between it and vertices that are seen. It takes the mean
+//! of its neighbours outside, or is open where there are none; such vertices are
+//! counted.
+//!
 //! The cosine that equation 9 leaves out is the half space of V, in which the reflection
 //! of light from below the surface has no part.
 
+mod buried;
 mod key;
 mod sampled;
 #[cfg(test)]
@@ -29,7 +35,7 @@ pub use key::TransportKey;
 use sampled::Lattice;
 
 use crate::geometry::harmonics::{Basis, about_axis, cosine_power, terms};
-use crate::truth::oracle::bvh::Bvh;
+use crate::truth::oracle::bvh::{Bvh, Ray};
 use crate::world::memo::Memo;
 use crate::world::mesh::widen;
 
@@ -82,6 +88,8 @@ pub struct Transport {
     pub glossy: Vec<f32>,
     /// Rays that were cast.
     pub rays: u64,
+    /// Vertices inside the object.
+    pub buried: u64,
 }
 
 impl Transport {
@@ -99,13 +107,15 @@ impl Transport {
             found
         };
         let count = object.positions.len();
-        let all: Vec<Vertex> = (0..count).into_par_iter().map(vertex).collect();
+        let mut all: Vec<Vertex> = (0..count).into_par_iter().map(vertex).collect();
+        let buried = buried::replace(&mut all, object.triangles);
         let row = |values: &[f64]| values.iter().map(|v| *v as f32).collect::<Vec<_>>();
         Self {
             settings,
             diffuse: all.iter().flat_map(|v| row(&v.diffuse)).collect(),
             glossy: all.iter().flat_map(|v| row(&v.glossy)).collect(),
             rays: all.iter().map(|v| v.rays).sum(),
+            buried,
         }
     }
 
@@ -163,6 +173,8 @@ struct Vertex {
     diffuse: Vec<f64>,
     glossy: Vec<f64>,
     rays: u64,
+    /// Inside the object; the coefficients are then those of an open surface.
+    buried: bool,
 }
 
 /// What all vertices of an object share.
@@ -171,6 +183,7 @@ struct Caster {
     lobes: [Vec<f64>; 2],
     lattice: Lattice,
     triangles: Bvh,
+    corners: Vec<[DVec3; 3]>,
     /// How far rays start above a vertex, and how far along them nothing is met: some
     /// ten times the rounding of its coordinates.
     lift: f64,
@@ -185,11 +198,12 @@ impl Caster {
         let counts = [settings.bands, settings.glossy_bands];
         let bases = counts.map(Basis::new);
         let corners = |t: &[u32; 3]| t.map(|i| widen(object.positions[i as usize]));
-        let triangles: Vec<_> = object.triangles.iter().map(corners).collect();
+        let corners: Vec<_> = object.triangles.iter().map(corners).collect();
         Self {
             lobes: [1.0, 0.0].map(|n| cosine_power(n, counts[usize::from(n == 0.0)])),
             lattice: Lattice::new(settings.directions, &bases),
-            triangles: Bvh::new(&triangles),
+            triangles: Bvh::new(&corners),
+            corners,
             lift: LIFT * extent(object.positions),
             casts: object.casts && !object.triangles.is_empty(),
             bases,
@@ -198,39 +212,54 @@ impl Caster {
 
     fn vertex(&self, position: DVec3, normal: DVec3) -> Vertex {
         let normal = normal.normalize_or_zero();
-        if normal == DVec3::ZERO {
-            let [diffuse, glossy] = [0, 1].map(|k| vec![0.0; terms(self.bases[k].bands())]);
-            let rays = 0;
-            return Vertex {
-                diffuse,
-                glossy,
-                rays,
-            };
-        }
-        let open = [0, 1].map(|k| about_axis(&self.bases[k], normal, &self.lobes[k]));
-        let [mut diffuse, mut glossy] = open;
-        let mut rays = 0;
-        if self.casts {
+        let open = [0, 1].map(|k| self.open(k, normal));
+        let [mut diffuse, mut glossy] = open.clone();
+        let (mut rays, mut buried) = (0, false);
+        if self.casts && normal != DVec3::ZERO {
             let origin = position + normal * self.lift;
-            let hidden = |d| {
-                self.triangles
-                    .any(&ray(origin, d), self.lift..f64::INFINITY)
+            let hides = |d| {
+                let ray = Ray::new(origin, d);
+                self.triangles.any(&ray, self.lift..f64::INFINITY)
             };
-            rays = self
-                .lattice
-                .take_off(normal, hidden, [&mut diffuse, &mut glossy]);
+            let off = [&mut diffuse[..], &mut glossy[..]];
+            let hidden = self.lattice.take_off(normal, hides, off);
+            rays = hidden.asked;
+            buried = hidden.met == rays && self.is_inside(origin, normal);
+        }
+        if buried {
+            [diffuse, glossy] = open;
         }
         diffuse.iter_mut().for_each(|c| *c /= std::f64::consts::PI);
         Vertex {
             diffuse,
             glossy,
             rays,
+            buried,
         }
     }
-}
 
-fn ray(origin: DVec3, direction: DVec3) -> crate::truth::oracle::bvh::Ray {
-    crate::truth::oracle::bvh::Ray::new(origin, direction)
+    /// Coefficients where nothing is hidden; none arrives where there is no normal.
+    fn open(&self, basis: usize, normal: DVec3) -> Vec<f64> {
+        if normal == DVec3::ZERO {
+            return vec![0.0; terms(self.bases[basis].bands())];
+        }
+        about_axis(&self.bases[basis], normal, &self.lobes[basis])
+    }
+
+    /// Whether most directions before `normal` first meet a triangle from behind.
+    fn is_inside(&self, origin: DVec3, normal: DVec3) -> bool {
+        let (mut behind, mut all) = (0, 0);
+        for d in self.lattice.before(normal) {
+            let ray = Ray::new(origin, d);
+            let Some((triangle, _)) = self.triangles.closest(&ray, self.lift..f64::INFINITY) else {
+                continue;
+            };
+            let [a, b, c] = self.corners[triangle as usize];
+            all += 1;
+            behind += usize::from((b - a).cross(c - a).dot(d) > 0.0);
+        }
+        2 * behind > all
+    }
 }
 
 /// Largest extent of points along an axis; 1 where there is none.

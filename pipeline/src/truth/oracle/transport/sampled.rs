@@ -8,6 +8,14 @@ use crate::world::shape::on_circle;
 /// π (3 - √5), the angle that no number of steps closes.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
+/// Directions before a vertex.
+pub(super) struct Hidden {
+    /// How many there are.
+    pub(super) asked: u64,
+    /// In how many something was met.
+    pub(super) met: u64,
+}
+
 /// A spherical Fibonacci lattice with the bases at its directions: equal solid angles,
 /// evenly spread, the same for every vertex, so that neighbours differ by what they see
 /// and not by noise.
@@ -36,28 +44,35 @@ impl Lattice {
         }
     }
 
-    /// Takes the directions in front of `normal` in which `hidden` holds off the
-    /// cosine's coefficients and the half space's; the number of directions asked for.
+    /// Directions before `normal`.
+    pub(super) fn before(&self, normal: DVec3) -> impl Iterator<Item = DVec3> {
+        let all = self.directions.iter().copied();
+        all.filter(move |d| normal.dot(*d) > 0.0)
+    }
+
+    /// Takes the directions before `normal` in which `hidden` holds off the cosine's
+    /// coefficients and the half space's.
     pub(super) fn take_off(
         &self,
         normal: DVec3,
         hidden: impl Fn(DVec3) -> bool,
         off: [&mut [f64]; 2],
-    ) -> u64 {
+    ) -> Hidden {
         let [diffuse, glossy] = off;
-        let mut rays = 0;
+        let (mut asked, mut met) = (0, 0);
         for (k, d) in self.directions.iter().enumerate() {
             let cosine = normal.dot(*d);
             if cosine <= 0.0 {
                 continue;
             }
-            rays += 1;
+            asked += 1;
             if hidden(*d) {
+                met += 1;
                 self.subtract(0, k, cosine, diffuse);
                 self.subtract(1, k, 1.0, glossy);
             }
         }
-        rays
+        Hidden { asked, met }
     }
 
     fn subtract(&self, basis: usize, direction: usize, weight: f64, from: &mut [f64]) {

@@ -187,3 +187,36 @@ fn any_number_of_threads_gives_the_same_bits_and_content_is_kept() {
     };
     assert_ne!(plain, key(&moved, settings));
 }
+
+/// A column whose ends are inside two boxes: its rims see nothing, and what lies between
+/// them sees nearly all.
+#[test]
+fn vertices_inside_their_object_take_after_those_outside() {
+    let column = || shape::cylinder(12, 0.2, -1.0, 1.0);
+    let ends = [-1.2, 1.2].map(|y| shape::cuboid(DVec3::Y * y, DVec3::new(1.0, 0.6, 1.0)));
+    let [low, high] = ends;
+    let whole = Shape::merged([column(), low, high]);
+    let whole = whole.into_mesh(Shading::Crease { degrees: 40.0 }).unwrap();
+    let found = transport(&whole, true, 256);
+    let list = whole.shading_vertices();
+    let mut sides = 0;
+    for (i, (p, n)) in list.positions.iter().zip(&list.normals).enumerate() {
+        let of_side = p[0].abs() < 0.3 && n[1].abs() < 0.1 && p[1].abs() < 1.05;
+        if of_side {
+            sides += 1;
+            assert!(
+                (open(&found, i) - 1.0).abs() < 1e-6,
+                "{p:?} {}",
+                open(&found, i)
+            );
+        }
+    }
+    // Both rims of the column, and the lids' own vertices.
+    assert!(
+        sides >= 24 && found.buried >= 48,
+        "{sides} {}",
+        found.buried
+    );
+    let bare = column().into_mesh(Shading::Smooth).unwrap();
+    assert_eq!(transport(&bare, true, 256).buried, 0);
+}

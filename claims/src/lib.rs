@@ -20,6 +20,7 @@ mod annen_shadows;
 mod annen_sky;
 mod annen_table;
 pub mod chart;
+mod cones;
 mod equal_error;
 mod finding;
 mod judge;
@@ -40,7 +41,9 @@ mod paper5;
 mod recorded;
 mod scenes;
 mod shader_work;
+mod smoothies;
 mod tally;
+mod tamura;
 mod thesis;
 
 use thiserror::Error;
@@ -129,7 +132,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 10] = [
+    let papers: [&'static [Claim]; 13] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
@@ -140,6 +143,9 @@ pub fn claims() -> impl Iterator<Item = &'static Claim> {
         paper4::CLAIMS,
         paper5::CLAIMS,
         annen::CLAIMS,
+        cones::CLAIMS,
+        smoothies::CLAIMS,
+        tamura::CLAIMS,
     ];
     papers.into_iter().flatten()
 }

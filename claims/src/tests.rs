@@ -95,6 +95,8 @@ fn every_claim_is_measured_at_a_small_size() {
         "annen-threefold",
         "annen-lights",
         "annen-brute-force",
+        "cone-culling-time",
+        "tamura-lights-and-maps",
     ];
     let cheap = |c: &&Claim| !dear.iter().any(|d| c.id.starts_with(d));
     for claim in claims().filter(cheap) {
@@ -120,5 +122,31 @@ fn every_claim_is_measured_at_a_small_size() {
             .flat_map(|c| &c.series)
             .flat_map(|s| &s.points);
         assert!(points.flatten().all(|v| v.is_finite()), "{}", claim.id);
+    }
+}
+
+/// What cone culling and smoothies claim of themselves holds, but for times.
+#[test]
+fn claims_of_cones_and_smoothies_hold() {
+    let settings = LabSettings {
+        size: [128, 96],
+        repeat: 1,
+        ..LabSettings::default()
+    };
+    let mut lab = Lab::new(settings, None);
+    for id in [
+        "cone-culling-samples",
+        "cone-culling-overlap",
+        "cone-culling-umbra",
+        "smoothies-umbra",
+    ] {
+        let found = find(id).unwrap().measure(&mut lab).unwrap().unwrap();
+        println!("{id}: {:?}", found.measures);
+        assert_eq!(
+            found.judgement(),
+            Judgement::Holds,
+            "{id}: {:?}",
+            found.measures
+        );
     }
 }

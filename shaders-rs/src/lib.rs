@@ -4,10 +4,12 @@
 //!   volumes alike
 //! * [`cones`]: shadows of spheres from the patches of a light view
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`convolution`]: shadow maps that are filtered before they are compared
 //! * [`penumbra`]: penumbra wedges of papers I and II
 //! * [`shadow_maps`]: shadows looked up in light views
+//! * [`smoothies`]: geometry that softens the edges of shadow maps
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
@@ -24,9 +26,11 @@ pub mod cones;
 pub mod convolution;
 pub mod coverage;
 pub mod coverage_table;
+pub mod deferred;
 pub mod light_view;
 pub mod penumbra;
 pub mod shadow_maps;
+pub mod smoothies;
 pub mod soft_volumes;
 pub mod split_volumes;
 pub mod surface;
@@ -84,8 +88,13 @@ stages! {
         transform::Surfaces: "transform.surfaces" 1,
         transform::FullScreen: "transform.full-screen" 1,
         transform::Facets: "transform.facets" 1,
+        smoothies::SmoothieVertices: "smoothies.vertices" 1,
         soft_volumes::HardQuads: "soft-volumes.hard-quads" 1,
         soft_volumes::EyeCount: "soft-volumes.eye-count" 1,
+        deferred::radiance::VertexRadiance: "deferred.vertex-radiance" 1,
+        deferred::radiance::Reflections: "deferred.reflections" 1,
+        deferred::radiance::Corners: "deferred.corners" 1,
+        deferred::obscured::Transported: "deferred.transported" 1,
     }
     fragment {
         surface::Constant: "surface.constant" 1,
@@ -124,11 +133,21 @@ stages! {
         cones::ConeShadow<cones::DiscSamples>: "cones.shadow-disc-samples" 1,
         cones::ConeShadow<cones::PatchTree>: "cones.shadow-patch-tree" 1,
         cones::ConeShadow<cones::AllPatches>: "cones.shadow-all-patches" 1,
+        smoothies::SmoothieDepth: "smoothies.depth" 1,
+        smoothies::SmoothieAlpha: "smoothies.alpha" 1,
+        smoothies::SmoothieShadow: "smoothies.shadow" 1,
         light_view::PlanarDepth: "light-view.planar-depth" 1,
         shadow_maps::Shadow<shadow_maps::BoxTaps>: "shadow-maps.box-taps" 1,
         shadow_maps::Shadow<shadow_maps::CubicTaps>: "shadow-maps.cubic-taps" 1,
         shadow_maps::Shadow<shadow_maps::SampledKernel>: "shadow-maps.sampled-kernel" 1,
         shadow_maps::Shadow<shadow_maps::WholeKernel>: "shadow-maps.whole-kernel" 1,
+        deferred::radiance::Carried: "deferred.carried" 1,
+        deferred::radiance::GlossyRadiance: "deferred.glossy-radiance" 1,
+        deferred::radiance::SurfaceRadiance: "deferred.surface-radiance" 1,
+        deferred::maps::BoxAlong: "deferred.box-along" 1,
+        deferred::obscured::ObscuredRadiance: "deferred.obscured-radiance" 1,
+        deferred::obscured::DistantVisibility: "deferred.distant-visibility" 1,
+        deferred::lit::LessObscured: "deferred.less-obscured" 1,
     }
 }
 
@@ -139,7 +158,7 @@ mod tests {
     #[test]
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
-        assert_eq!(table.vertex_shaders().count(), 7);
-        assert_eq!(table.fragment_shaders().count(), 38);
+        assert_eq!(table.vertex_shaders().count(), 12);
+        assert_eq!(table.fragment_shaders().count(), 48);
     }
 }

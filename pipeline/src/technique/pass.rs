@@ -36,10 +36,14 @@ pub enum PassRole {
     Horizon,
     /// The scene seen from a light.
     LightView,
+    /// Geometry round silhouettes, seen from a light.
+    Smoothies,
     /// Images made of a light view, filtered.
     Prefilter,
     /// Shadows looked up in light views.
     LookUp,
+    /// Light of vertices, and of surfaces from it.
+    Radiance,
     /// One picture added to another.
     AddPicture,
     /// Anything else.

@@ -6,6 +6,7 @@
 
 mod cone_culling;
 mod convolution_soft_shadows;
+mod deferred_shadowing;
 mod mixed_lights;
 mod pcf;
 mod pcss;
@@ -16,12 +17,14 @@ mod sampled_shadow_volumes;
 mod shadow_map;
 mod shadow_maps_n;
 mod shadow_volumes;
+mod smoothies;
 mod soft_shadow_volumes;
 mod soft_shadow_volumes_optimised;
 mod unshadowed;
 
 use cone_culling::ConeCulling;
 use convolution_soft_shadows::ConvolutionSoftShadows;
+use deferred_shadowing::DeferredShadowing;
 use mixed_lights::MixedLights;
 use pcf::Pcf;
 use pcss::Pcss;
@@ -31,6 +34,7 @@ use sampled_shadow_volumes::SampledShadowVolumes;
 use shadow_map::ShadowMap;
 use shadow_maps_n::ShadowMapsN;
 use shadow_volumes::ShadowVolumes;
+use smoothies::Smoothies;
 use soft_shadow_volumes::SoftShadowVolumes;
 use soft_shadow_volumes_optimised::SoftShadowVolumesOptimised;
 use unshadowed::Unshadowed;
@@ -55,7 +59,9 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &Pcss,
         &ShadowMapsN,
         &ConvolutionSoftShadows,
+        &DeferredShadowing,
         &ConeCulling,
+        &Smoothies,
         &MixedLights,
     ];
     LIST

@@ -12,7 +12,7 @@ use gnomon_raster::{
 };
 use gnomon_shaders::transform::FullScreen;
 
-use super::light_view::{CasterGeometry, Fitted, Surroundings, ViewedLight, views_of};
+use super::light_view::{CasterGeometry, Fitted, LightViews, Surroundings, ViewedLight};
 use super::lit_tiles::{FurtherLights, LitTiles};
 use super::mapped::{Hints, MapNotes, ViewSettings, ViewsOfLight};
 use crate::parts::frame_settings::FrameSettings;
@@ -24,14 +24,17 @@ use crate::world::scene::Scene;
 
 /// A light of a [`Pictures`].
 pub(crate) struct PicturedLight<D> {
-    /// As views are fitted to it.
     pub(crate) viewed: ViewedLight,
+    /// What is looked at from it.
+    pub(crate) views: LightViews,
     /// What the technique knows of it.
     pub(crate) data: D,
 }
 
 /// A view that pictures are made of.
 pub(crate) struct PicturedView<'a> {
+    /// Among the light's.
+    pub(crate) number: usize,
     pub(crate) fitted: &'a Fitted,
     pub(crate) geometry: &'a CasterGeometry,
     pub(crate) view: &'a View,
@@ -60,6 +63,11 @@ pub(crate) trait Pictures {
     /// By how much blockers must be nearer than receivers in a view, world units.
     fn bias(&self, fitted: &Fitted) -> f64;
 
+    /// Texels over which slopes push blockers away from the light.
+    fn slope(&self) -> f64 {
+        0.0
+    }
+
     /// The passes that make the pictures, with labels for what they are.
     fn passes(
         &self,
@@ -78,7 +86,7 @@ pub(crate) struct Pictured<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) size: [u32; 2],
     pub(crate) frame: FrameSettings,
-    pub(crate) view: ViewSettings,
+    pub(crate) views: ViewSettings,
     pub(crate) skip: bool,
     /// Limit what facets see to what is before them.
     pub(crate) horizon: bool,
@@ -144,14 +152,14 @@ impl OneLight<'_> {
         }
         let reference = light.viewed.reference(self.around);
         let geometry = CasterGeometry::new(turn.scene, self.around, self.view, reference);
-        let ViewSettings { views, fitting } = self.settings.view;
-        let found = views_of(&light.viewed, self.around, views, &fitting);
+        let ViewSettings { views, fitting } = self.settings.views;
         let mut counted = ViewsOfLight::default();
-        counted.missing = found.missing;
+        counted.missing = light.views.missing;
         let mut passes = Vec::new();
-        for fitted in &found.views {
+        for (number, fitted) in light.views.views.iter().enumerate() {
             counted.add(fitted, pictures.bias(fitted), fitting.size);
             let view = PicturedView {
+                number,
                 fitted,
                 geometry: &geometry,
                 view: self.view,
@@ -165,7 +173,7 @@ impl OneLight<'_> {
         if passes.is_empty() {
             passes.push(self.look_up(labels("look-up"), true, None));
         }
-        notes.add(counted, 0.0, Hints::of(views, fitting.near));
+        notes.add(counted, pictures.slope(), Hints::of(views, fitting.near));
         Ok(passes)
     }
 

@@ -89,7 +89,7 @@ impl Technique for ConeCulling {
             scene,
             size,
             frame: settings.frame,
-            view: settings.view,
+            views: settings.view,
             skip: settings.skip,
             horizon: false,
         };

@@ -109,8 +109,11 @@ impl Pictures for PatchPictures {
         let sphere = Sphere::of(self.technique, light, number)?;
         let viewed = ViewedLight::new(self.technique, light, number)?;
         turn.notes.warnings.extend(sphere_instead(light, number));
+        let viewed = sphere.widened(viewed, around, &self.settings);
+        let view = &self.settings.view;
         Ok(PicturedLight {
-            viewed: sphere.widened(viewed, around, &self.settings),
+            viewed,
+            views: views_of(&viewed, around, view.views, &view.fitting),
             data: sphere,
         })
     }

@@ -89,6 +89,7 @@ impl Twin {
             size: side as u32,
             near: None,
             to: FitTo::Casters,
+            margin: 0.0,
         };
         let mut views = views_of(&light, &around, Views::Auto, &fitting).views;
         assert_eq!(views.len(), 1, "one view for one picture");

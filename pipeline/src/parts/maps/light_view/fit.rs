@@ -34,6 +34,9 @@ pub(crate) struct Fitting {
     /// Nearest distance that is looked at; `None`: [`NEAR_SHARE`] of the farthest.
     pub(crate) near: Option<f64>,
     pub(crate) to: FitTo,
+    /// How far what is attached to casters reaches beyond them in the picture: tangents,
+    /// or lengths.
+    pub(crate) margin: f64,
 }
 
 /// Nearest distance over the farthest, where none is given.
@@ -128,7 +131,8 @@ pub(crate) fn fit(
         return fit;
     }
     let range = [near, farthest];
-    let between = Between::new(around, frame, region, extent, receivers, range);
+    let places = receivers.grown([fitting.margin; 2]);
+    let between = Between::new(around, frame, region, extent, places, range);
     scope.exact_view(between.facets(around))
 }
 
@@ -181,7 +185,7 @@ impl Scope<'_> {
             return Fit::Unshadowed;
         };
         let inside = match self.fitting.to {
-            FitTo::Casters => window.meet(&casters),
+            FitTo::Casters => window.meet(&casters.grown([self.fitting.margin; 2])),
             FitTo::Receivers => window,
         };
         let steepest = inside.steepest();
@@ -200,7 +204,8 @@ impl Scope<'_> {
             high: middle.map(|m| m + half),
             ..inside
         };
-        let picture = picture.grown([2.0 * half / f64::from(self.fitting.size) * SNAPPING; 2]);
+        let snapping = 2.0 * half / f64::from(self.fitting.size) * SNAPPING;
+        let picture = picture.grown([snapping + self.fitting.margin; 2]);
         facets.retain(|f| f.bounds.overlaps(&picture));
         let mut objects: Vec<usize> = facets.iter().map(|f| f.object).collect();
         objects.dedup();
@@ -229,7 +234,8 @@ impl Scope<'_> {
         for _ in 0..2 {
             let reach = (1.0 / casters.nearest - 1.0 / self.farthest).max(0.0);
             window = self.receivers.grown(self.halves.map(|h| h * reach));
-            let inside = |f: &&Facet| matters(f) && f.bounds.overlaps(&window);
+            let reached = window.grown([self.fitting.margin; 2]);
+            let inside = |f: &&Facet| matters(f) && f.bounds.overlaps(&reached);
             casters = joined(facets.iter().filter(inside));
             if casters.is_empty() {
                 return None;

@@ -40,6 +40,11 @@ pub(crate) struct LightMap {
 const SLOPE_LIMIT: f64 = 8.0;
 
 impl LightMap {
+    /// The depth buffer, of which nothing is kept.
+    pub(crate) fn buffer(&self) -> TextureId {
+        self.buffer
+    }
+
     /// Of `size` by `size` texels.
     ///
     /// # Errors
@@ -80,7 +85,22 @@ impl CasterGeometry {
         view: &View,
         reference: DVec3,
     ) -> Self {
-        let casters = around.casters.iter().map(|&(object, mesh)| {
+        Self::of(scene, around.casters.iter().copied(), view, reference)
+    }
+
+    /// All objects, casters or not.
+    pub(crate) fn of_all(scene: &Scene, view: &View, reference: DVec3) -> Self {
+        let meshes = scene.objects.iter().map(|o| &*o.mesh).enumerate();
+        Self::of(scene, meshes, view, reference)
+    }
+
+    fn of<'a>(
+        scene: &Scene,
+        meshes: impl Iterator<Item = (usize, &'a Mesh)>,
+        view: &View,
+        reference: DVec3,
+    ) -> Self {
+        let casters = meshes.map(|(object, mesh)| {
             let vertices = Arc::new(facets(mesh, view, reference));
             let indices = (0..vertices.len() as u32).collect();
             CasterDraw {
@@ -179,6 +199,40 @@ impl Fitted {
         target: &PictureTarget,
         skip: bool,
     ) -> RenderPass {
+        let casters = geometry.casters.iter();
+        let casters = casters.filter(|c| !skip || self.objects.binary_search(&c.object).is_ok());
+        let drawn = casters.filter_map(|c| Some((c, self.drawn(c)?))).collect();
+        self.picture(shader, label, drawn, view, target)
+    }
+
+    /// Depths of all objects of `geometry` into `color`, all of their triangles.
+    pub(crate) fn pass_of_all(
+        &self,
+        label: String,
+        geometry: &CasterGeometry,
+        view: &View,
+        map: &LightMap,
+        color: TextureId,
+    ) -> RenderPass {
+        let target = PictureTarget {
+            color,
+            clear: [1.0; 4],
+            buffer: map.buffer,
+        };
+        let shader = self.planar_depth(geometry, map.size, 0.0).stage();
+        let all = geometry.casters.iter();
+        let drawn = all.map(|c| (c, c.indices.clone())).collect();
+        self.picture(shader, label, drawn, view, &target)
+    }
+
+    fn picture(
+        &self,
+        shader: FragmentStage,
+        label: String,
+        drawn: Vec<(&CasterDraw, Arc<IndexBuffer>)>,
+        view: &View,
+        target: &PictureTarget,
+    ) -> RenderPass {
         let pipeline = Arc::new(RenderPipeline {
             label: "light view".into(),
             vertex: Facets(self.clip_from_world(view)).stage(),
@@ -187,7 +241,6 @@ impl Fitted {
             depth_stencil: DepthStencilState::opaque(),
             color_targets: vec![ColorTargetState::OPAQUE],
         });
-        let casters = geometry.casters.iter();
         RenderPass {
             label,
             color: vec![attachment(target.color, LoadOp::Clear(target.clear))],
@@ -199,9 +252,8 @@ impl Fitted {
                 stencil_load: LoadOp::DontCare,
                 stencil_store: StoreOp::Discard,
             }),
-            draws: casters
-                .filter(|c| !skip || self.objects.binary_search(&c.object).is_ok())
-                .filter_map(|c| Some((c, self.drawn(c)?)))
+            draws: drawn
+                .into_iter()
                 .map(|(c, indices)| Draw::indexed(&c.name, &pipeline, &c.vertices, &indices))
                 .collect(),
         }
@@ -278,7 +330,7 @@ impl Fitted {
         along + right * x + down * y
     }
 
-    fn depth_range(&self) -> DepthRange {
+    pub(crate) fn depth_range(&self) -> DepthRange {
         let [near, far] = self.range.map(|z| (z - self.base) as f32);
         DepthRange { near, far }
     }
@@ -315,7 +367,7 @@ impl Fitted {
 
     /// Depth 0 at the near distance, 1 at infinity, of orthographic views at the far
     /// distance; the picture's upper edge is `y = w`.
-    fn clip_from_world(&self, view: &View) -> ClipFromWorld {
+    pub(crate) fn clip_from_world(&self, view: &View) -> ClipFromWorld {
         let [right, down, along] = self.frame.axes;
         let centre = view.relative(self.frame.centre);
         let row = |axis: DVec3, offset: f64| {

@@ -70,6 +70,11 @@ impl<'a> Surroundings<'a> {
         }
     }
 
+    /// Casters: number in the scene, and mesh.
+    pub(crate) fn casters(&self) -> &[(usize, &'a Mesh)] {
+        &self.casters
+    }
+
     /// Convex polygons, world space, whose union holds every receiver seen.
     pub(super) fn receivers(&self) -> impl Iterator<Item = &[DVec3]> {
         let mut start = 0;

@@ -19,6 +19,7 @@ fn fitting(to: FitTo) -> Fitting {
         size: SIZE,
         near: None,
         to,
+        margin: 0.0,
     }
 }
 

@@ -92,6 +92,7 @@ impl ViewSettings {
                 size,
                 near: params.get(&NEAR)?,
                 to: params.get(&FIT)?,
+                margin: 0.0,
             },
             views: params.get(&VIEW)?,
         })

@@ -15,6 +15,7 @@ mod peers;
 mod soft_errors;
 mod spheres;
 mod statue;
+mod two_box;
 mod walk;
 mod wireframe;
 
@@ -74,6 +75,7 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("parallel-plates", "square plate parallel to light and floor: soft shadows in closed form", parallel_plates::scene),
     entry("single-silhouette", "cube close to a large light: the silhouette of the light's centre misses the umbra", soft_errors::single_silhouette),
     entry("overlap", "two crossing bars: penumbrae that overlap are not to be summed", soft_errors::overlap),
+    entry("two-box", "a small box above a larger one above a floor: both cast, two receive", two_box::scene),
     entry("creature", "biped of 15 overlapping closed parts", creature::scene),
     moving("walk", "animated: a creature walks round, a ball bounces, a knot and a beam turn (8 s)", walk::scene),
     entry("statue", "a figure of 70,000 triangles with folds and cavities on a pedestal", statue::scene),

@@ -1,0 +1,111 @@
+//! Chan and Durand, "Rendering Fake Soft Shadows with Smoothies", 2003, by its course
+//! notes. Its cylinder on a floor is the built-in one; its flamingo and elephant are not to
+//! be had.
+
+use gnomon_pipeline::technique::PassRole;
+
+use super::scenes::with_lights_scaled;
+use super::tally::counters;
+use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+
+pub(super) const CLAIMS: &[Claim] = &[
+    Claim::new(
+        "smoothies-umbra",
+        "Chan and Durand, limits of the method",
+        Verdict::Counters,
+        "Umbrae stay as large as lights grow, where those of a ray tracer shrink.",
+        umbra,
+    ),
+    Claim::new(
+        "smoothies-cost",
+        "Chan and Durand, results at 256x256",
+        Verdict::Counters,
+        "Percentage-closer filtering with a bicubic kernel takes 16 samples, and considerably \
+         more time than smoothies.",
+        cost,
+    ),
+    Claim::quoted(
+        "smoothies-samples",
+        "Chan and Durand, introduction",
+        "Filtering and stochastic sampling need at least 64 samples to be free of noise and \
+         bands.",
+    ),
+];
+
+const TECHNIQUE: &str = "smoothies";
+
+fn umbra(lab: &mut Lab) -> Result<Finding, ReproduceError> {
+    let set = ["fit=receivers", "map-size=512"];
+    let small = with_lights_scaled(lab.scene("cylinder")?, 0.25);
+    let large = with_lights_scaled(lab.scene("cylinder")?, 1.0);
+    let mut ours = [0.0; 2];
+    let mut truth = [0.0; 2];
+    for (k, scene) in [small, large].into_iter().enumerate() {
+        let done = lab.render(&scene, TECHNIQUE, &set)?;
+        let exact = lab.truth(&scene, &done)?;
+        // What is turned away is dark in the truth whatever the light.
+        let floor = |k: &usize| exact.values[*k].is_finite();
+        let pixels = (0..done.visibility.len()).filter(floor);
+        ours[k] = done.visibility.iter().filter(|v| **v == 0.0).count() as f64;
+        truth[k] = pixels.filter(|k| exact.values[*k] < 1e-6).count() as f64;
+    }
+    let ratio = |[small, large]: [f64; 2]| large / small.max(1.0);
+    Ok(Finding {
+        scene: lab.describe("cylinder, a quarter of its light and all of it"),
+        counted: "pixels that see nothing of the light".to_owned(),
+        measures: vec![
+            Measure::new(
+                "umbra under the large light over the small one",
+                Theirs::Exactly(1.0),
+                ratio(ours),
+                Unit::Ratio,
+            ),
+            Measure::new(
+                "the same of the exact truth",
+                Theirs::AtMost(1.0),
+                ratio(truth),
+                Unit::Ratio,
+            ),
+        ],
+        reason: "The picture from the light was fitted to smoothies.".to_owned(),
+        charts: Vec::new(),
+    })
+}
+
+fn cost(lab: &mut Lab) -> Result<Finding, ReproduceError> {
+    let scene = lab.scene("cylinder")?;
+    let [soft, cubic] = lab.race(
+        &scene,
+        [
+            (TECHNIQUE, &["map-size=256"][..]),
+            ("pcf", &["kernel=bicubic", "map-size=256"]),
+        ],
+    )?;
+    let fetches = |done| {
+        let looked = counters(done, &[PassRole::LookUp]);
+        looked.traffic.tex_fetches[1..4].iter().sum::<u64>() as f64
+    };
+    Ok(Finding {
+        scene: lab.describe("cylinder"),
+        counted: "API-level fetches of the pass `look-up` beyond positions and planes; whole \
+            frames"
+            .to_owned(),
+        measures: vec![
+            Measure::new(
+                "fetches, bicubic filtering over smoothies",
+                Theirs::AtLeast(3.0),
+                fetches(&cubic) / fetches(&soft),
+                Unit::Ratio,
+            ),
+            Measure::new(
+                "time, bicubic filtering over smoothies",
+                Theirs::AtLeast(1.0),
+                cubic.frame_ms / soft.frame_ms,
+                Unit::Ratio,
+            ),
+        ],
+        reason: "Pictures of surfaces and smoothies cost more here than 13 look-ups fewer gain."
+            .to_owned(),
+        charts: Vec::new(),
+    })
+}

@@ -505,4 +505,22 @@ mod tests {
         assert_eq!(found, texels);
         r.finish().unwrap();
     }
+
+    #[test]
+    fn codes_that_are_not_known_are_refused() {
+        let mut w = EventWriter::new();
+        w.push(&BlockAccess::default());
+        let data = w.finish();
+        // Behind the head, a byte in each column before the last byte of the code.
+        let last = 12 + 8 * COLUMNS + CODE + CODE_BYTES - 1;
+        let read = |bits: u8| {
+            let mut data = data.clone();
+            data[last] |= bits;
+            EventReader::new(&data).unwrap().next().map(|b| b.unwrap())
+        };
+        assert!(read(HIZ_READ.to_le_bytes()[4]).unwrap().hiz_read);
+        for bits in [0x40, 0x80] {
+            assert!(read(bits).unwrap_err().contains("not known"), "{bits:#x}");
+        }
+    }
 }

@@ -6,6 +6,7 @@
 
 use crate::format::Format;
 use crate::gpu::PassReport;
+use crate::simd::SimdLevel;
 use crate::{MAX_COLOR_ATTACHMENTS, MAX_VARYINGS};
 
 /// What one primitive did to one 8×8 block. Bit `8·row + column` is a pixel.
@@ -101,10 +102,13 @@ pub struct Wants<'a> {
     pub probe: Option<[u32; 2]>,
     /// [`BlockAccess::witness`].
     pub witness: Option<&'a dyn BlockWitness>,
+    /// [`AccessBatch::left`]: a witness that is called once for all that a draw did to a
+    /// block, and not for each of its events.
+    pub left: Option<&'a dyn BlockWitness>,
 }
 
-/// Looks at a block after each event that wrote to it, and says something of it in 64
-/// bits: a hash, or what a codec would make of it. Called by workers.
+/// Looks at a block that was written to, and says something of it in 64 bits: a hash, or
+/// what a codec would make of it. Called by workers.
 pub trait BlockWitness: Sync {
     /// What is to be said.
     fn after(&self, block: &BlockView<'_>) -> u64;
@@ -124,6 +128,27 @@ pub struct BlockView<'a> {
     pub color: &'a [ColorBlock<'a>],
     /// Their formats.
     pub formats: &'a [Format],
+    /// What the GPU runs on, for witnesses that are lane code.
+    pub level: SimdLevel,
+}
+
+impl<'a> BlockView<'a> {
+    /// A block wholly inside an image, to ask a witness by hand.
+    #[must_use]
+    pub fn new(
+        depth_stencil: Option<(&'a [u32; 64], &'a [u8; 64])>,
+        color: &'a [ColorBlock<'a>],
+        formats: &'a [Format],
+    ) -> Self {
+        Self {
+            block: [0; 2],
+            inside: u64::MAX,
+            depth_stencil,
+            color,
+            formats,
+            level: SimdLevel::detect(),
+        }
+    }
 }
 
 /// The bits of a block of a colour attachment as they are stored, pixels in the order of
@@ -140,6 +165,17 @@ pub enum ColorBlock<'a> {
     B16x4(&'a [[u16; 64]; 4]),
     /// Rgba32Float, one channel after the other.
     B32x4(&'a [[u32; 64]; 4]),
+}
+
+/// What a draw left in a block that it wrote to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BlockLeft {
+    /// Number of the draw in its render pass.
+    pub draw: u32,
+    /// Block column and row.
+    pub block: [u16; 2],
+    /// What [`Wants::left`] made of the block behind the draw's last event.
+    pub seen: u64,
 }
 
 /// Texels of one 8×8 block of a texture that the fragments of one event read.
@@ -241,6 +277,10 @@ pub struct AccessBatch<'a> {
     pub outputs: &'a [ShadedBlock],
     /// What `outputs` refer to.
     pub values: &'a [u32],
+    /// Ordered by draw, block row, block column; empty where [`Wants::left`] is not set.
+    /// Each draw and block to which it wrote once in a pass, with the draw's last event in
+    /// the block or later.
+    pub left: &'a [BlockLeft],
 }
 
 impl<'a> AccessBatch<'a> {
@@ -253,6 +293,7 @@ impl<'a> AccessBatch<'a> {
             fragments: &[],
             outputs: &[],
             values: &[],
+            left: &[],
         }
     }
 

@@ -4,6 +4,7 @@
 //!   volumes alike
 //! * [`cones`]: shadows of spheres from the patches of a light view
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`convolution`]: shadow maps that are filtered before they are compared
 //! * [`penumbra`]: penumbra wedges of papers I and II
@@ -25,6 +26,7 @@ pub mod cones;
 pub mod convolution;
 pub mod coverage;
 pub mod coverage_table;
+pub mod deferred;
 pub mod light_view;
 pub mod penumbra;
 pub mod shadow_maps;
@@ -89,6 +91,10 @@ stages! {
         smoothies::SmoothieVertices: "smoothies.vertices" 1,
         soft_volumes::HardQuads: "soft-volumes.hard-quads" 1,
         soft_volumes::EyeCount: "soft-volumes.eye-count" 1,
+        deferred::radiance::VertexRadiance: "deferred.vertex-radiance" 1,
+        deferred::radiance::Reflections: "deferred.reflections" 1,
+        deferred::radiance::Corners: "deferred.corners" 1,
+        deferred::obscured::Transported: "deferred.transported" 1,
     }
     fragment {
         surface::Constant: "surface.constant" 1,
@@ -135,6 +141,13 @@ stages! {
         shadow_maps::Shadow<shadow_maps::CubicTaps>: "shadow-maps.cubic-taps" 1,
         shadow_maps::Shadow<shadow_maps::SampledKernel>: "shadow-maps.sampled-kernel" 1,
         shadow_maps::Shadow<shadow_maps::WholeKernel>: "shadow-maps.whole-kernel" 1,
+        deferred::radiance::Carried: "deferred.carried" 1,
+        deferred::radiance::GlossyRadiance: "deferred.glossy-radiance" 1,
+        deferred::radiance::SurfaceRadiance: "deferred.surface-radiance" 1,
+        deferred::maps::BoxAlong: "deferred.box-along" 1,
+        deferred::obscured::ObscuredRadiance: "deferred.obscured-radiance" 1,
+        deferred::obscured::DistantVisibility: "deferred.distant-visibility" 1,
+        deferred::lit::LessObscured: "deferred.less-obscured" 1,
     }
 }
 
@@ -145,7 +158,7 @@ mod tests {
     #[test]
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
-        assert_eq!(table.vertex_shaders().count(), 8);
-        assert_eq!(table.fragment_shaders().count(), 41);
+        assert_eq!(table.vertex_shaders().count(), 12);
+        assert_eq!(table.fragment_shaders().count(), 48);
     }
 }

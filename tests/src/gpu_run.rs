@@ -5,8 +5,8 @@ use std::sync::Arc;
 use gnomon_raster::{
     AccessBatch, AccessObserver, BlockAccess, BlockView, BlockWitness, ColorAttachment, ColorBlock,
     CommandList, DepthStencilAttachment, Draw, Error, Format, FragmentRecord, Gpu, GpuConfig,
-    IndexBuffer, Recording, RenderPass, RenderPipeline, ShadedBlock, Subresource, TexelAccess,
-    TextureBinding, TextureDescriptor, TextureId, VertexBuffer, Wants,
+    IndexBuffer, PassReport, Recording, RenderPass, RenderPipeline, ShadedBlock, Subresource,
+    TexelAccess, TextureBinding, TextureDescriptor, TextureId, VertexBuffer, Wants,
 };
 
 use crate::twin::{
@@ -52,6 +52,14 @@ impl AccessObserver for Collector {
             ..*o
         }));
         d.values.extend_from_slice(batch.values);
+        d.left.extend_from_slice(batch.left);
+    }
+
+    /// When each is told of is left open: they are ordered here.
+    fn end(&mut self, pass: usize, _: &PassReport) {
+        if let Some((_, d)) = self.passes.get_mut(pass) {
+            d.left.sort_by_key(|l| (l.draw, l.block[1], l.block[0]));
+        }
     }
 }
 
@@ -122,6 +130,7 @@ pub fn run_probed(case: &TwinCase, config: GpuConfig, probe: [u32; 2]) -> Result
         outputs: true,
         probe: Some(probe),
         witness: Some(&HashWitness),
+        left: Some(&HashWitness),
     };
     run_with(case, config, Some(wants))
 }

@@ -1,8 +1,13 @@
 //! What an observer is told beside the accesses: texels, shader outputs, the fragments of
-//! one pixel and witnesses, record for record those of the naive twin, and the same under
-//! every configuration.
+//! one pixel, witnesses and what draws leave, record for record those of the naive twin, and
+//! the same under every configuration.
 
-use gnomon_raster::{Counters, FragmentEnd, FragmentRecord, GpuConfig, MAX_TEXTURES, SimdLevel};
+use std::collections::BTreeMap;
+
+use gnomon_raster::{
+    BlockAccess, BlockLeft, Counters, FragmentEnd, FragmentRecord, GpuConfig, MAX_TEXTURES,
+    SimdLevel,
+};
 use gnomon_tests::check::config_of;
 use gnomon_tests::gpu_run::{run_observed, run_probed};
 use gnomon_tests::parallel;
@@ -47,6 +52,21 @@ fn pass_difference(gpu: &PassOutcome, twin: &PassOutcome) -> Option<String> {
         .or_else(|| differs("output", &a.outputs, &b.outputs))
         .or_else(|| differs("value", &a.values, &b.values))
         .or_else(|| differs("fragment", &a.fragments, &b.fragments))
+        .or_else(|| differs("block left", &a.left, &left(&twin.events)))
+}
+
+/// What the last event of each draw in each block left there, each once.
+fn left(events: &[BlockAccess]) -> Vec<BlockLeft> {
+    let mut last = BTreeMap::new();
+    for e in events.iter().filter(|e| e.witness != 0) {
+        last.insert((e.draw, e.block[1], e.block[0]), e.witness);
+    }
+    let left = last.into_iter().map(|((draw, y, x), seen)| BlockLeft {
+        draw,
+        block: [x, y],
+        seen,
+    });
+    left.collect()
 }
 
 /// How much was compared: texel accesses, values, integers, witnesses, records by end, and

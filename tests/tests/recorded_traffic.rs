@@ -159,18 +159,26 @@ fn frame_of(technique: &dyn Technique) -> Recording {
         .recording
 }
 
+/// Of a file with shaders by name, and of one without them.
 #[test]
 fn recorded_traffic_of_every_technique_is_live_traffic() {
     let (mut compared, mut merged) = (0, 0);
     for technique in techniques::all() {
         let name = technique.name();
         let recording = frame_of(*technique);
-        let trace = record(Meta::new(name), &recording, RecordOptions::default()).unwrap();
-        let trace = Trace::read(trace.to_bytes().to_vec()).unwrap();
-        let told = told(&trace, 0);
-        let goes_on = |t: &Traffic| t.merges.iter().any(|m| m.refused.is_none());
-        merged += usize::from(told.iter().any(goes_on));
-        compared += compare(name, &told, &live(&recording, configs()[1]));
+        let live = live(&recording, configs()[1]);
+        for frozen in [false, true] {
+            let options = RecordOptions {
+                frozen,
+                ..RecordOptions::default()
+            };
+            let trace = record(Meta::new(name), &recording, options).unwrap();
+            let trace = Trace::read(trace.to_bytes().to_vec()).unwrap();
+            let told = told(&trace, 0);
+            let goes_on = |t: &Traffic| t.merges.iter().any(|m| m.refused.is_none());
+            merged += usize::from(told.iter().any(goes_on));
+            compared += compare(name, &told, &live);
+        }
     }
     assert!(compared > 10 * 12 && merged > 3, "{compared} {merged}");
 }

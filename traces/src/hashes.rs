@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use gnomon_raster::{
-    AccessBatch, AccessObserver, Error, Gpu, GpuConfig, Recording, SubmitReport, Wants,
+    AccessBatch, AccessObserver, BlockLeft, Error, Gpu, GpuConfig, Recording, SubmitReport, Wants,
 };
 
 use crate::format::v1::TileHash;
-use crate::witness::{Witness, hash_of};
+use crate::witness::Contents;
 
 /// Side of a tile in 8×8 blocks.
 pub(crate) const TILE: u16 = 8;
@@ -40,7 +40,7 @@ impl DrawHashes {
         let draws = recording.list.passes.iter().map(|p| p.draws.len());
         let mut hashes = Hashing::new(draws);
         let wants = Wants {
-            witness: Some(&Witness),
+            left: Some(&Contents),
             ..Wants::default()
         };
         let report = gpu.submit_observed(&recording.list, wants, &mut hashes)?;
@@ -69,12 +69,9 @@ impl DrawHashes {
     }
 }
 
-/// Gathers what the events of draws left in their blocks.
+/// Gathers what draws left in their blocks.
 pub(crate) struct Hashing {
     hashes: DrawHashes,
-    /// Of the draw that is under way: its blocks and what was last seen of them.
-    blocks: BTreeMap<[u16; 2], u64>,
-    at: [usize; 2],
 }
 
 impl Hashing {
@@ -83,45 +80,25 @@ impl Hashing {
         let passes = draws.map(|n| vec![BTreeMap::new(); n]).collect();
         Self {
             hashes: DrawHashes { passes },
-            blocks: BTreeMap::new(),
-            at: [0; 2],
         }
     }
 
     /// The hashes of all that was heard.
-    pub(crate) fn done(mut self) -> DrawHashes {
-        self.close();
+    pub(crate) fn done(self) -> DrawHashes {
         self.hashes
-    }
-
-    /// The draw is over: its tiles are the sums over their blocks.
-    fn close(&mut self) {
-        let [pass, draw] = self.at;
-        let blocks = core::mem::take(&mut self.blocks);
-        let Some(tiles) = self
-            .hashes
-            .passes
-            .get_mut(pass)
-            .and_then(|p| p.get_mut(draw))
-        else {
-            return;
-        };
-        for (block, seen) in blocks {
-            let sum = tiles.entry(block.map(|b| b / TILE)).or_insert(0);
-            *sum = sum.wrapping_add(mix(block, seen));
-        }
     }
 }
 
 impl AccessObserver for Hashing {
+    /// A tile is the sum over its blocks.
     fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
-        for event in batch.blocks.iter().filter(|e| e.witness != 0) {
-            let at = [pass, event.draw as usize];
-            if at != self.at {
-                self.close();
-                self.at = at;
-            }
-            self.blocks.insert(event.block, hash_of(event.witness));
+        let tile = |b: &BlockLeft| (b.draw, [b.block[0] / TILE, b.block[1] / TILE]);
+        for blocks in batch.left.chunk_by(|a, b| tile(a) == tile(b)) {
+            let (draw, tile) = tile(&blocks[0]);
+            let tiles = &mut self.hashes.passes[pass][draw as usize];
+            let sum = tiles.entry(tile).or_insert(0);
+            let all = blocks.iter().map(|b| mix(b.block, b.seen));
+            *sum = all.fold(*sum, u64::wrapping_add);
         }
     }
 }

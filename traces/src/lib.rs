@@ -39,4 +39,4 @@ pub use shape::{DrawShape, FragmentShape, FrameShape, PassShape};
 pub use trace::{FrameCounters, SectionNote, ShaderNote, Trace};
 pub use trim::{Keep, trim};
 pub use walk::{Until, draw_until};
-pub use witness::Witness;
+pub use witness::{Contents, Witness};

@@ -63,7 +63,10 @@ pub struct DrawDifference {
     /// Pixels of the tile that the draw wrote to, then or now: the difference is among
     /// them.
     pub pixels: u32,
-    /// The first of them, row by row from the top.
+    /// Those of them that it wrote to only then, or only now; `None` where no accesses were
+    /// recorded. Where there are none, the values are others.
+    pub apart: Option<u32>,
+    /// The first of those, or else of all, row by row from the top.
     pub first: Option<[u32; 2]>,
     /// Name and version of its shader.
     pub shader: String,
@@ -84,6 +87,9 @@ impl core::fmt::Display for ReplayDifference {
         };
         let [x, y] = d.tile;
         write!(f, ", tile ({x},{y}): among {} pixels", d.pixels)?;
+        if let Some(apart) = d.apart {
+            write!(f, ", {apart} of them written only then or only now")?;
+        }
         if let Some([x, y]) = d.first {
             write!(f, ", first ({x},{y})")?;
         }
@@ -108,10 +114,11 @@ pub fn replay(
         return Err(trace.missing(HASH, frame));
     }
     let (mut attachments, mut difference) = (0, None);
+    let mut ends = run::EndHashes::default();
     let (gpu, report) = run::guarded(frame, || {
         let mut gpu = Gpu::new(config)?;
         let report = run::draw_passes(&mut gpu, &recording, |gpu, number, pass| {
-            let now = run::end_hashes(gpu, pass)?;
+            let now = ends.of(gpu, pass)?;
             attachments += now.len();
             if difference.is_none() {
                 difference = end_difference(&recording, number, &hashes, &now);
@@ -183,10 +190,13 @@ impl Replayed {
         };
         let mut pixels = Pixels {
             at: (pass, draw, tile),
+            run: 0,
             written: Default::default(),
         };
         self.observe(frame, unskipped, &mut pixels)?;
-        if trace.has(TRAF, frame as u32, pass as u32) {
+        let recorded = trace.has(TRAF, frame as u32, pass as u32);
+        if recorded {
+            pixels.run = 1;
             trace.events(frame, &mut pixels)?;
         }
         let list = &self.recording.list.passes[pass];
@@ -202,8 +212,13 @@ impl Replayed {
                 draw: draw as usize,
                 label: label.unwrap_or_default(),
                 tile,
-                pixels: pixels.written.values().map(|m| m.count_ones()).sum(),
-                first: pixels.first(),
+                pixels: pixels.count(|[a, b]| a | b),
+                apart: recorded.then(|| pixels.count(|[a, b]| a ^ b)),
+                first: match recorded {
+                    true => pixels.first(|[a, b]| a ^ b),
+                    false => None,
+                }
+                .or_else(|| pixels.first(|[a, b]| a | b)),
                 shader: shader.unwrap_or_default(),
             }),
         });
@@ -238,15 +253,23 @@ fn first_difference(then: &[TileHash], now: &[TileHash]) -> Option<(u32, [u16; 2
     }
 }
 
-/// Pixels that a draw writes to in a tile, by block row and column.
+/// Pixels that a draw writes to in a tile.
 struct Pixels {
     at: (usize, u32, [u16; 2]),
-    written: std::collections::BTreeMap<[u16; 2], u64>,
+    /// Of which run the next accesses are: now (0), then (1).
+    run: usize,
+    /// Of both runs, by block row and column.
+    written: std::collections::BTreeMap<[u16; 2], [u64; 2]>,
 }
 
 impl Pixels {
-    fn first(&self) -> Option<[u32; 2]> {
-        let pixels = self.written.iter().flat_map(|([row, column], mask)| {
+    fn count(&self, which: impl Fn([u64; 2]) -> u64) -> u32 {
+        self.written.values().map(|m| which(*m).count_ones()).sum()
+    }
+
+    fn first(&self, which: impl Fn([u64; 2]) -> u64) -> Option<[u32; 2]> {
+        let pixels = self.written.iter().flat_map(|([row, column], masks)| {
+            let mask = which(*masks);
             let set = (0..64u32).filter(move |i| mask >> i & 1 != 0);
             set.map(move |i| {
                 let (x, y) = (8 * u32::from(*column), 8 * u32::from(*row));
@@ -263,7 +286,8 @@ impl AccessObserver for Pixels {
         for b in batch.blocks.iter().filter(here) {
             let color = b.color_write.iter().fold(0, |m, w| m | w);
             let mask = b.z_write | b.stencil_write | color;
-            *self.written.entry([b.block[1], b.block[0]]).or_insert(0) |= mask;
+            let masks = self.written.entry([b.block[1], b.block[0]]).or_default();
+            masks[self.run] |= mask;
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Drawing a frame, whole or pass by pass, so that what each pass leaves can be looked at.
 
 use gnomon_raster::{
-    CommandList, Error, Gpu, GpuConfig, Recording, RenderPass, SubmitReport, Subresource, TextureId,
+    CommandList, Error, Gpu, GpuConfig, LoadOp, Recording, RenderPass, RenderPipeline, StoreOp,
+    SubmitReport, Subresource, TextureId,
 };
-use xxhash_rust::xxh3::xxh3_128;
+use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::error::TraceError;
 use crate::guard;
@@ -47,12 +48,60 @@ pub(crate) fn attachments(pass: &RenderPass) -> Vec<(TextureId, Subresource)> {
         .collect()
 }
 
-/// Hashes of what the attachments of a pass hold.
-pub(crate) fn end_hashes(gpu: &Gpu, pass: &RenderPass) -> Result<Vec<u128>, Error> {
-    let hash = |(texture, image): (TextureId, Subresource)| {
-        Ok(xxh3_128(&gpu.texture(texture)?.read_packed(image)?))
+/// Hashes of what attachments hold when passes end.
+#[derive(Default)]
+pub(crate) struct EndHashes {
+    /// The last of each image.
+    known: Vec<((TextureId, Subresource), u128)>,
+}
+
+impl EndHashes {
+    /// Those of `pass`, which has just been drawn. What it cannot have written to has the
+    /// hash that it had.
+    pub(crate) fn of(&mut self, gpu: &Gpu, pass: &RenderPass) -> Result<Vec<u128>, Error> {
+        let mut hashes = Vec::new();
+        for (number, image) in attachments(pass).into_iter().enumerate() {
+            let known = self.known.iter().position(|(k, _)| *k == image);
+            let hash = match known {
+                Some(at) if !may_write(pass, number) => self.known[at].1,
+                _ => hash(gpu, image)?,
+            };
+            hashes.push(hash);
+            match known {
+                Some(at) => self.known[at].1 = hash,
+                None => self.known.push((image, hash)),
+            }
+        }
+        Ok(hashes)
+    }
+}
+
+fn hash(gpu: &Gpu, (texture, image): (TextureId, Subresource)) -> Result<u128, Error> {
+    let mut hasher = Xxh3Default::new();
+    let rows = gpu.texture(texture)?;
+    rows.visit_packed(image, |row| hasher.update(row))?;
+    Ok(hasher.digest128())
+}
+
+/// Whether the commands of a pass are such that attachment number `attachment` can be
+/// another afterwards.
+fn may_write(pass: &RenderPass, attachment: usize) -> bool {
+    let draws = || pass.draws.iter().map(|d| &d.pipeline);
+    if let Some(a) = pass.color.get(attachment) {
+        let masks = |p: &RenderPipeline| p.color_targets.get(attachment).map(|t| t.write_mask);
+        return a.load != LoadOp::Load
+            || a.store != StoreOp::Store
+            || draws().any(|p| p.fragment.is_some() && masks(p).is_none_or(|m| m.0 != 0));
+    }
+    let writes = |p: &RenderPipeline| {
+        let s = &p.depth_stencil;
+        s.depth.write || s.stencil.front.writes() || s.stencil.back.writes()
     };
-    attachments(pass).into_iter().map(hash).collect()
+    pass.depth_stencil.as_ref().is_none_or(|a| {
+        (a.depth_load, a.stencil_load) != (LoadOp::Load, LoadOp::Load)
+            || (a.depth_store, a.stencil_store) != (StoreOp::Store, StoreOp::Store)
+            || draws().any(|p| writes(p))
+    })
 }
 
 /// What `run` gives; what the GPU refuses, or a shader that panics, is an error of `frame`.

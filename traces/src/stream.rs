@@ -7,6 +7,7 @@ use gnomon_raster::{
 
 use crate::error::TraceError;
 use crate::format::events::{EventReader, TexelReader};
+use crate::format::section::Entry;
 use crate::shape::{FrameShape, PassShape};
 use crate::trace::{TEXL, TRAF, Trace};
 
@@ -45,32 +46,84 @@ impl Trace {
         pass: usize,
         observer: &mut dyn AccessObserver,
     ) -> Result<(), TraceError> {
-        let section = self.section(TRAF, frame as u32, pass as u32)?;
-        let (entry, data) = section.ok_or_else(|| self.missing(TRAF, frame))?;
-        let wrong = |e: String| entry.wrong(&e);
-        let texels = self.section(TEXL, frame as u32, pass as u32)?;
-        let mut texels = match &texels {
+        let sections = self.pass_sections(frame, pass)?;
+        let mut stream = sections.stream(shape, pass)?;
+        while let Some(batch) = stream.next()? {
+            observer.batch(pass, &batch);
+        }
+        Ok(())
+    }
+
+    /// What is written of a pass's accesses.
+    pub(crate) fn pass_sections(
+        &self,
+        frame: usize,
+        pass: usize,
+    ) -> Result<PassSections, TraceError> {
+        let of = |tag| self.section(tag, frame as u32, pass as u32);
+        Ok(PassSections {
+            events: of(TRAF)?.ok_or_else(|| self.missing(TRAF, frame))?,
+            texels: of(TEXL)?,
+        })
+    }
+}
+
+/// Sections of a pass, unpacked.
+pub(crate) struct PassSections {
+    events: (Entry, Vec<u8>),
+    texels: Option<(Entry, Vec<u8>)>,
+}
+
+impl PassSections {
+    /// Their accesses; the sections are of pass number `pass` of the frame `shape`.
+    pub(crate) fn stream<'a>(
+        &'a self,
+        shape: &'a FrameShape,
+        pass: usize,
+    ) -> Result<PassStream<'a>, TraceError> {
+        let (entry, data) = &self.events;
+        let events = EventReader::new(data).map_err(|e| entry.wrong(&e))?;
+        let texels = match &self.texels {
             None => None,
             Some((entry, data)) => {
                 let reader = TexelReader::new(data).map_err(|e| entry.wrong(&e))?;
-                Some((*entry, reader))
+                Some((entry, reader))
             }
         };
-        let valid = Valid::new(shape, &shape.passes[pass]);
-        let mut events = EventReader::new(&data).map_err(wrong)?;
-        let mut batch = Batch::default();
-        while batch.take(&mut events, &valid).map_err(wrong)? {
-            if let Some((entry, reader)) = &mut texels {
-                let taken = batch.take_texels(reader, &valid);
-                taken.map_err(|e| entry.wrong(&e))?;
-            }
-            let told = AccessBatch::new(&batch.blocks).with_texels(&batch.texels);
-            observer.batch(pass, &told);
+        Ok(PassStream {
+            valid: Valid::new(shape, &shape.passes[pass]),
+            entry,
+            events,
+            texels,
+            batch: Batch::default(),
+        })
+    }
+}
+
+/// The accesses of a pass, batch after batch.
+pub(crate) struct PassStream<'a> {
+    valid: Valid<'a>,
+    entry: &'a Entry,
+    events: EventReader<'a>,
+    texels: Option<(&'a Entry, TexelReader<'a>)>,
+    batch: Batch,
+}
+
+impl PassStream<'_> {
+    /// The next ones; `None` behind the last.
+    pub(crate) fn next(&mut self) -> Result<Option<AccessBatch<'_>>, TraceError> {
+        let batch = &mut self.batch;
+        let taken = batch.take(&mut self.events, &self.valid);
+        let any = taken.map_err(|e| self.entry.wrong(&e))?;
+        if let Some((entry, reader)) = &mut self.texels {
+            let taken = match any {
+                true => batch.take_texels(reader, &self.valid),
+                false => reader.finish(),
+            };
+            taken.map_err(|e| entry.wrong(&e))?;
         }
-        match texels {
-            Some((entry, reader)) => reader.finish().map_err(|e| entry.wrong(&e)),
-            None => Ok(()),
-        }
+        let told = AccessBatch::new(&batch.blocks).with_texels(&batch.texels);
+        Ok(any.then_some(told))
     }
 }
 

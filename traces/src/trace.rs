@@ -116,6 +116,18 @@ impl Trace {
         Ok(trace)
     }
 
+    /// The trace that was just made of `meta`, `blobs` and the sections in `file`.
+    pub(crate) fn made(file: Vec<u8>, meta: Meta, blobs: Blobs) -> Result<Self, TraceError> {
+        let contents = file::read(&file)?;
+        check_twins(&contents.entries)?;
+        Ok(Self {
+            file,
+            contents,
+            meta,
+            blobs,
+        })
+    }
+
     /// Writes the file.
     ///
     /// # Errors

@@ -42,6 +42,8 @@ pub enum PassRole {
     Prefilter,
     /// Shadows looked up in light views.
     LookUp,
+    /// Light of vertices, and of surfaces from it.
+    Radiance,
     /// One picture added to another.
     AddPicture,
     /// Anything else.

@@ -6,6 +6,7 @@
 
 mod cone_culling;
 mod convolution_soft_shadows;
+mod deferred_shadowing;
 mod mixed_lights;
 mod pcf;
 mod pcss;
@@ -23,6 +24,7 @@ mod unshadowed;
 
 use cone_culling::ConeCulling;
 use convolution_soft_shadows::ConvolutionSoftShadows;
+use deferred_shadowing::DeferredShadowing;
 use mixed_lights::MixedLights;
 use pcf::Pcf;
 use pcss::Pcss;
@@ -57,6 +59,7 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &Pcss,
         &ShadowMapsN,
         &ConvolutionSoftShadows,
+        &DeferredShadowing,
         &ConeCulling,
         &Smoothies,
         &MixedLights,

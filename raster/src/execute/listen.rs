@@ -4,16 +4,18 @@ use core::ops::Range;
 
 use rayon::prelude::*;
 
+use super::order::Order;
 use crate::geometry::Chunk;
 use crate::observer::{
-    AccessBatch, AccessObserver, BlockAccess, FragmentRecord, ShadedBlock, TexelAccess, Wants,
+    AccessBatch, AccessObserver, BlockAccess, BlockLeft, FragmentRecord, ShadedBlock, TexelAccess,
+    Wants,
 };
-use crate::tile::Gathered;
+use crate::tile::{Gathered, Turn};
 
 /// Primitives of a chunk while somebody listens: no fewer can be held back.
 const CHUNK: u32 = 32;
 /// Accesses that chunks may make together before they are handed over.
-const ACCESSES: u64 = 1 << 18;
+const ACCESSES: u64 = 1 << 13;
 
 /// How many times the memory of an access goes with each, of what is wanted.
 fn weight(wants: Wants<'_>) -> u32 {
@@ -56,7 +58,8 @@ impl<'a> Listener<'a> {
         let batch = &mut self.batch;
         batch.clear();
         gathered.for_each(|g| batch.take(g, parallel));
-        if batch.blocks.is_empty() {
+        // What draws left can be told behind their last events.
+        if batch.blocks.is_empty() && batch.left.is_empty() {
             return;
         }
         batch.sort(parallel);
@@ -66,6 +69,7 @@ impl<'a> Listener<'a> {
             fragments: &batch.fragments,
             outputs: &batch.outputs,
             values: &batch.values,
+            left: &batch.left,
         };
         self.observer.batch(self.pass, &whole);
     }
@@ -75,25 +79,33 @@ impl<'a> Listener<'a> {
 #[derive(Default)]
 struct Batch {
     blocks: Vec<BlockAccess>,
+    turns: Vec<Turn>,
     texels: Vec<TexelAccess>,
     fragments: Vec<FragmentRecord>,
     outputs: Vec<ShadedBlock>,
     values: Vec<u32>,
+    left: Vec<BlockLeft>,
+    order: Order,
+    /// Memory for blocks in their order.
+    ordered: Vec<BlockAccess>,
 }
 
 impl Batch {
     fn clear(&mut self) {
         self.blocks.clear();
+        self.turns.clear();
         self.texels.clear();
         self.fragments.clear();
         self.outputs.clear();
         self.values.clear();
+        self.left.clear();
     }
 
     /// Takes over what one worker gathered, of several if `parallel`.
     fn take(&mut self, from: &mut Gathered, parallel: bool) {
         let (event, value) = (self.blocks.len() as u32, self.values.len() as u32);
         append(&mut self.blocks, &mut from.blocks, parallel, |_| {});
+        append(&mut self.turns, &mut from.turns, parallel, |_| {});
         append(&mut self.texels, from.texels.folded(), parallel, |t| {
             t.event += event
         });
@@ -104,18 +116,24 @@ impl Batch {
             (o.event, o.first) = (o.event + event, o.first + value);
         });
         append(&mut self.values, &mut from.values, parallel, |_| {});
+        append(&mut self.left, &mut from.left, parallel, |_| {});
     }
 
     /// Orders events, and with them what belongs to them, so that nothing tells who has
     /// gathered it.
     fn sort(&mut self, parallel: bool) {
-        let key = |a: &BlockAccess| (a.draw, a.primitive, a.piece, a.block[1], a.block[0]);
-        if self.texels.is_empty() && self.fragments.is_empty() && self.outputs.is_empty() {
-            return sort_by_key(&mut self.blocks, parallel, key);
+        let order = self.order.of(&self.turns);
+        self.ordered.clear();
+        self.ordered.reserve(order.len());
+        for &event in order {
+            self.ordered.push(self.blocks[event as usize]);
         }
-        let mut order: Vec<u32> = (0..self.blocks.len() as u32).collect();
-        sort_by_key(&mut order, parallel, |&i| key(&self.blocks[i as usize]));
-        self.blocks = order.iter().map(|&i| self.blocks[i as usize]).collect();
+        core::mem::swap(&mut self.blocks, &mut self.ordered);
+        self.left
+            .sort_unstable_by_key(|l| (l.draw, l.block[1], l.block[0]));
+        if self.texels.is_empty() && self.fragments.is_empty() && self.outputs.is_empty() {
+            return;
+        }
         let mut rank = vec![0; order.len()];
         for (new, &old) in order.iter().enumerate() {
             rank[old as usize] = new as u32;

@@ -1,6 +1,7 @@
 //! Execution of command lists: validation, geometry, tiles, reports.
 
 mod listen;
+mod order;
 mod pass;
 mod prepare;
 mod split;

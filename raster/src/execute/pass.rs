@@ -292,12 +292,15 @@ fn draw_work<'a>(
     prepared: &'a [Prepared<'a>],
 ) -> Vec<DrawWork<'a>> {
     let mut work: Vec<DrawWork<'a>> = Vec::new();
+    let mut first = 0;
     for (job, chunk) in jobs.iter().zip(chunks) {
         let draw = units[job.unit].draw;
         let chunk = ChunkRef {
             chunk,
             shaded: &shaded[job.unit],
+            first,
         };
+        first += chunk.chunk.triangles.len() as u32;
         match work.last_mut() {
             Some(w) if w.draw == draw => w.chunks.push(chunk),
             _ => work.push(DrawWork {

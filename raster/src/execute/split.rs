@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::texture::{
     Block, Block4, ColorBlocks, DepthPlane, Layout, Plane, Subresource, TextureId,
 };
-use crate::tile::{ColorTile, DepthTile, TileTarget};
+use crate::tile::{ColorTile, DepthTile, TileTarget, Untold};
 
 /// The attachments while a pass runs: their storage, and what happens to it at both ends.
 pub(super) struct Lent {
@@ -122,6 +122,7 @@ impl Lent {
                     height,
                     depth,
                     color,
+                    untold: Untold::default(),
                 });
             }
         }

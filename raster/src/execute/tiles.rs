@@ -135,6 +135,7 @@ impl Visit<'_> {
             tile,
             &mut desk.scratch,
             self.wants.map(|w| (w, &mut desk.gathered)),
+            self.after.is_some(),
         );
         if let Some(fill) = self.after {
             fill.apply(tile, self.sizes);

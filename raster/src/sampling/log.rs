@@ -11,13 +11,27 @@ const TEXELS: u32 = BLOCK * BLOCK;
 
 /// Texels that fragments read and that are counted, and before them those of earlier
 /// events, folded; those of an event in no order that others could rely on.
-#[derive(Default)]
 pub(crate) struct TexelLog {
     /// Of earlier events.
     folded: Vec<TexelAccess>,
-    /// Of the event that is on its way: reads of one block that follow one another
-    /// together.
+    /// Of the event that is on its way: those of one block nearly always together.
     reads: Vec<Read>,
+    /// Where blocks are among `reads`, by a few bits of where they are stored: an event
+    /// reads the same few again and again.
+    known: [u32; KNOWN],
+}
+
+/// Blocks of an event that are found at once.
+const KNOWN: usize = 64;
+
+impl Default for TexelLog {
+    fn default() -> Self {
+        Self {
+            folded: Vec::new(),
+            reads: Vec::new(),
+            known: [0; KNOWN],
+        }
+    }
 }
 
 /// Reads of one block of a texture; ordered by where it is.
@@ -36,6 +50,13 @@ impl Read {
     fn is_beside(&self, other: &Self) -> bool {
         let place = |r: &Self| (r.slot, r.mip, r.layer, r.index);
         place(self) == place(other)
+    }
+
+    /// A number below [`KNOWN`].
+    fn spread(&self) -> usize {
+        let image =
+            (u32::from(self.slot) << 4) ^ (u32::from(self.mip) << 3) ^ u32::from(self.layer);
+        (self.index ^ image.wrapping_mul(7)) as usize % KNOWN
     }
 
     /// Takes the reads of the same block in.
@@ -61,6 +82,18 @@ impl TexelLog {
             log: self,
             slot: slot as u8,
             counted,
+        }
+    }
+
+    fn add(&mut self, read: &Read) {
+        // What is known of earlier events points anywhere, and is seen to be another block.
+        let known = &mut self.known[read.spread()];
+        match self.reads.get_mut(*known as usize) {
+            Some(same) if same.is_beside(read) => same.join(read),
+            _ => {
+                *known = self.reads.len() as u32;
+                self.reads.push(*read);
+            }
         }
     }
 
@@ -110,10 +143,7 @@ impl SlotLog<'_> {
                 texels: 1 << (at % TEXELS),
                 taps: 1,
             };
-            match self.log.reads.last_mut() {
-                Some(last) if last.is_beside(&read) => last.join(&read),
-                _ => self.log.reads.push(read),
-            }
+            self.log.add(&read);
         }
     }
 }

@@ -5,6 +5,8 @@ use core::str::FromStr;
 
 use fearless_simd::{Fallback, Level};
 
+use super::Lanes;
+
 /// The levels that code is compiled for, each once: what can be chosen is what
 /// [`with_lanes`] matches, on every target.
 macro_rules! levels {
@@ -64,6 +66,15 @@ pub struct SimdLevel {
     token: Token,
 }
 
+/// Code over lanes outside of shaders, which [`SimdLevel::run`] compiles for every level.
+pub trait LaneProgram {
+    /// What it gives.
+    type Output;
+
+    /// The program; `#[inline(always)]`, as is all that it calls.
+    fn run<L: Lanes>(self, l: L) -> Self::Output;
+}
+
 /// A level's name that is unknown, or that this CPU cannot run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("SIMD level `{given}` cannot be used here; this CPU has: auto, {}", .available.join(", "))]
@@ -115,6 +126,12 @@ impl SimdLevel {
     #[must_use]
     pub fn type_name(self) -> &'static str {
         with_lanes!(self, l => core::any::type_name_of_val(&l))
+    }
+
+    /// Runs `program` as it is compiled for this level.
+    #[inline]
+    pub fn run<P: LaneProgram>(self, program: P) -> P::Output {
+        with_lanes!(self, l => program.run(l))
     }
 
     pub(crate) fn token(self) -> Token {

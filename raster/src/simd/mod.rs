@@ -25,7 +25,7 @@ mod short;
 pub(crate) use double::{F64, round_to_i32};
 pub use float::F32;
 pub use int::{I32, U32};
-pub use level::{SimdLevel, UnknownSimdLevel};
+pub use level::{LaneProgram, SimdLevel, UnknownSimdLevel};
 pub(crate) use level::{Token, with_lanes};
 pub use mask::Mask;
 pub(crate) use seam::outlined;

@@ -80,7 +80,7 @@ impl<L: Lanes> I32<L> {
 impl<L: Lanes> U32<L> {
     /// From bytes.
     #[inline(always)]
-    pub(crate) fn from_bytes(l: L, a: &[u8; LANES]) -> Self {
+    pub fn from_bytes(l: L, a: &[u8; LANES]) -> Self {
         let isa = l.isa();
         let v = u8x16::from_slice(isa, a);
         let v = l.op(

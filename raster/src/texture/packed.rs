@@ -4,7 +4,7 @@
 //! depth-stencil image is its depth plane (the 24-bit integer in 3 bytes, or the
 //! float's 4), then its stencil plane.
 
-use super::layout::Layout;
+use super::layout::{BLOCK, Layout};
 use super::plane::{ColorBlocks, DepthPlane, Plane};
 use super::resource::{Subresource, Texture, image_size, pixels};
 use super::{HIZ_STALE, TextureDescriptor};
@@ -65,13 +65,23 @@ impl Texture {
         let mut bytes = Vec::new();
         let what = || format!("a copy of the texels of `{}`", self.desc.label);
         reserve(&mut bytes, packed_len(&self.desc, s)?, what)?;
+        self.visit_packed(s, |row| bytes.extend_from_slice(row))?;
+        Ok(bytes)
+    }
+
+    /// Shows `visit` what [`Texture::read_packed`] gives, row by row.
+    ///
+    /// # Errors
+    /// There is no such image.
+    pub fn visit_packed(&self, s: Subresource, mut visit: impl FnMut(&[u8])) -> Result<(), Error> {
+        packed_len(&self.desc, s)?;
         let layout = &self.layouts[s.mip as usize];
         match &self.planes[s.mip as usize][s.layer as usize] {
-            Plane::Color(blocks) => read_color(blocks, self.desc.format, layout, &mut bytes),
-            Plane::Depth(plane) => read_depth(plane, self.desc.format, layout, &mut bytes),
+            Plane::Color(blocks) => read_color(blocks, layout, &mut visit),
+            Plane::Depth(plane) => read_depth(plane, self.desc.format, layout, &mut visit),
             Plane::Lent => unreachable!("only while a command list is executed"),
         }
-        Ok(bytes)
+        Ok(())
     }
 
     /// Replaces an image by bytes that [`Texture::read_packed`] gave: the same stored
@@ -119,21 +129,101 @@ pub(crate) fn check_packed(
     }
 }
 
-fn read_color(blocks: &ColorBlocks, format: Format, layout: &Layout, to: &mut Vec<u8>) {
-    for (x, y) in pixels(layout) {
-        pack(format, blocks.get(format, layout.locate(x, y)), to);
+// Plain loops over numbers, and closures that are inlined without fail: iterators and
+// `copy_from_slice` can stay calls for each texel.
+
+fn read_color(blocks: &ColorBlocks, layout: &Layout, to: &mut impl FnMut(&[u8])) {
+    match blocks {
+        ColorBlocks::B8(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| v[b].0[i].to_le_bytes(),
+        ),
+        ColorBlocks::B16(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| v[b].0[i].to_le_bytes(),
+        ),
+        ColorBlocks::B32(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| v[b].0[i].to_le_bytes(),
+        ),
+        ColorBlocks::B16x4(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| {
+                let c = &v[b].0;
+                let [c0, c1, c2, c3] = [c[0][i], c[1][i], c[2][i], c[3][i]];
+                let low = u64::from(c0) | u64::from(c1) << 16;
+                (low | u64::from(c2) << 32 | u64::from(c3) << 48).to_le_bytes()
+            },
+        ),
+        ColorBlocks::B32x4(v) => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| {
+                let c = &v[b].0;
+                let [c0, c1, c2, c3] = [c[0][i], c[1][i], c[2][i], c[3][i]];
+                let low = u128::from(c0) | u128::from(c1) << 32;
+                (low | u128::from(c2) << 64 | u128::from(c3) << 96).to_le_bytes()
+            },
+        ),
     }
 }
 
-fn read_depth(plane: &DepthPlane, format: Format, layout: &Layout, to: &mut Vec<u8>) {
-    let bytes = format.bytes() as usize;
-    for (x, y) in pixels(layout) {
-        let (block, pixel) = layout.locate(x, y);
-        to.extend_from_slice(&plane.depth[block].0[pixel].to_le_bytes()[..bytes]);
+fn read_depth(plane: &DepthPlane, format: Format, layout: &Layout, to: &mut impl FnMut(&[u8])) {
+    match format.bytes() {
+        3 => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| {
+                let [low, middle, high, _] = plane.depth[b].0[i].to_le_bytes();
+                [low, middle, high]
+            },
+        ),
+        _ => read_rows(
+            layout,
+            to,
+            #[inline(always)]
+            |b, i| plane.depth[b].0[i].to_le_bytes(),
+        ),
     }
-    for (x, y) in pixels(layout) {
-        let (block, pixel) = layout.locate(x, y);
-        to.push(plane.stencil[block].0[pixel]);
+    read_rows(
+        layout,
+        to,
+        #[inline(always)]
+        |b, i| [plane.stencil[b].0[i]],
+    );
+}
+
+/// Shows the texels of an image row by row; `texel` gives the bytes of a pixel of a block.
+#[inline(always)]
+fn read_rows<const N: usize>(
+    layout: &Layout,
+    visit: &mut impl FnMut(&[u8]),
+    texel: impl Fn(usize, usize) -> [u8; N],
+) {
+    const SIDE: usize = BLOCK as usize;
+    let blocks = layout.width.div_ceil(BLOCK) as usize;
+    let mut row = vec![[[0; N]; SIDE]; blocks];
+    for y in 0..layout.height {
+        let first = SIDE * (y as usize % SIDE);
+        for x in 0..blocks {
+            let block = layout.block_index(x as u32, y / BLOCK);
+            let to = &mut row[x];
+            for i in 0..SIDE {
+                to[i] = texel(block, first + i);
+            }
+        }
+        let row = &row.as_flattened()[..layout.width as usize];
+        visit(row.as_flattened());
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Env<'a, 't> {
     pub(super) config: &'a DrawConfig<'a>,
     pub(super) draw: u32,
     pub(super) chunk: &'a ChunkRef<'a>,
+    /// Number of the triangle under way in the chunk.
+    pub(super) triangle: u32,
     pub(super) target: &'a mut TileTarget<'t>,
     pub(super) counters: &'a mut TileStageCounters,
     pub(super) outputs: &'a mut [PacketOutput; PACKETS],
@@ -362,7 +364,9 @@ fn run_covered<L: Lanes, const D24: bool>(
         if env.listening.is_some() {
             return listened::<L, D24>(l, env, t, place, plane, decision, mask);
         }
-        fragments(l, env, t, config.face(t), place, plane, decision, mask);
+        let face = config.face(t);
+        let mut access = BlockAccess::default();
+        fragments(l, env, t, face, place, plane, decision, mask, &mut access);
     }
 }
 
@@ -386,8 +390,9 @@ fn listened<L: Lanes, const D24: bool>(
         },
     );
     let face = env.config.face(t);
-    let access = fragments(l, env, t, face, place, plane, decision, mask);
-    listen::take_down::<D24>(env, t, place, probed, access);
+    let mut access = BlockAccess::default();
+    fragments(l, env, t, face, place, plane, decision, mask, &mut access);
+    listen::take_down::<D24>(env, t, place, probed, &mut access);
 }
 
 /// Pixels on the right side of clip planes and of the far end.
@@ -437,6 +442,7 @@ pub(super) fn consult<L: Lanes, const D24: bool>(
     Some(decision)
 }
 
+/// What becomes of the pixels of `mask`, also as an access that begins empty.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "one triangle in one block")]
 fn fragments<L: Lanes, const D24: bool>(
@@ -448,13 +454,11 @@ fn fragments<L: Lanes, const D24: bool>(
     plane: &DepthBlock<D24>,
     decision: Option<Decision>,
     mask: u64,
-) -> BlockAccess {
+    access: &mut BlockAccess,
+) {
     let config = env.config;
-    let mut access = BlockAccess {
-        covered: mask,
-        hiz_read: config.hiz,
-        ..BlockAccess::default()
-    };
+    access.covered = mask;
+    access.hiz_read = config.hiz;
     count(&mut env.counters.fragments.generated, mask);
     if config.depth_ranges {
         (access.span, access.stored) = outlined(
@@ -465,7 +469,7 @@ fn fragments<L: Lanes, const D24: bool>(
     }
     let Some(decision) = consult(l, env, face, place, plane, decision, mask) else {
         access.ended.hiz = true;
-        return access;
+        return;
     };
     let late = config.is_late(face);
     let mut alive = mask;
@@ -481,7 +485,7 @@ fn fragments<L: Lanes, const D24: bool>(
         alive = outlined(
             l,
             #[inline(always)]
-            || tests::<L, D24>(l, env, place, face, &depths, decision, alive, &mut access),
+            || tests::<L, D24>(l, env, place, face, &depths, decision, alive, access),
         );
     }
     if !late && config.shader.is_some() {
@@ -491,9 +495,8 @@ fn fragments<L: Lanes, const D24: bool>(
     }
     if alive != 0 && config.shader.is_some() {
         output::write(l, env, place, alive);
-        color_access(config, alive, &mut access);
+        color_access(config, alive, access);
     }
-    access
 }
 
 /// Depths of the plane in the block, and of what is stored there.

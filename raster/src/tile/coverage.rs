@@ -38,6 +38,7 @@ pub(super) fn bin<L: Lanes, S: BlockStage, const D24: bool>(
     let (tx, ty) = (env.target.x as i32, env.target.y as i32);
     for &i in bin {
         let t = &env.chunk.chunk.triangles[i as usize];
+        env.triangle = i;
         env.varyings.forget();
         if t.mask == 0 {
             outlined(

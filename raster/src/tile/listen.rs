@@ -4,13 +4,9 @@
 use super::block::{Env, Place};
 use super::config::{DrawConfig, StencilFace};
 use super::shade;
-use super::target::TileTarget;
-use crate::format::Format;
+use super::witness::{look_at, wrote};
 use crate::geometry::Triangle;
-use crate::observer::{
-    BlockAccess, BlockView, BlockWitness, ColorBlock, FragmentEnd, FragmentRecord, ShadedBlock,
-    Wants,
-};
+use crate::observer::{BlockAccess, BlockLeft, FragmentEnd, FragmentRecord, ShadedBlock, Wants};
 use crate::sampling::TexelLog;
 use crate::shader::PacketOutput;
 use crate::simd::LANES;
@@ -20,10 +16,22 @@ use crate::{MAX_COLOR_ATTACHMENTS, MAX_VARYINGS};
 #[derive(Default)]
 pub(crate) struct Gathered {
     pub(crate) blocks: Vec<BlockAccess>,
+    /// Where each of `blocks` belongs.
+    pub(crate) turns: Vec<Turn>,
+    pub(crate) left: Vec<BlockLeft>,
     pub(crate) texels: TexelLog,
     pub(crate) fragments: Vec<FragmentRecord>,
     pub(crate) outputs: Vec<ShadedBlock>,
     pub(crate) values: Vec<u32>,
+}
+
+/// Where an event belongs among those of a run.
+#[derive(Clone, Copy)]
+pub(crate) struct Turn {
+    /// Number of its triangle among all of the run.
+    pub(crate) triangle: u32,
+    /// Block row in the upper half, block column in the lower.
+    pub(crate) place: u32,
 }
 
 /// Somebody listens.
@@ -99,11 +107,40 @@ pub(super) fn take_down<const D24: bool>(
     t: &Triangle,
     place: Place,
     probed: Option<Probed>,
-    access: BlockAccess,
+    access: &mut BlockAccess,
 ) {
-    let shaded = shaded(env.config, env.config.face(t), &access);
-    let record = probed.map(|p| fragment::<D24>(env, place, &p, shaded, &access));
-    let draw = env.draw;
+    access.draw = env.draw;
+    access.primitive = t.primitive;
+    access.piece = u32::from(t.piece);
+    access.block = [(place.x / 8) as u16, (place.y / 8) as u16];
+    access.front = t.is_front();
+    details::<D24>(env, t, place, probed, access);
+    let turn = Turn {
+        triangle: env.chunk.first + env.triangle,
+        place: ((place.y / 8) << 16) | (place.x / 8),
+    };
+    let Some(l) = &mut env.listening else { return };
+    if (l.wants.witness.is_some() || l.wants.left.is_some()) && wrote(access) {
+        env.target.untold.add(env.draw, place.index);
+        if let Some(w) = l.wants.witness {
+            let at = [place.x / 8, place.y / 8];
+            access.witness = look_at(env.target, env.config, place.index, at, w, env.level);
+        }
+    }
+    l.gathered.turns.push(turn);
+    l.gathered.blocks.push(*access);
+}
+
+/// Takes down what is told beside the event.
+fn details<const D24: bool>(
+    env: &mut Env<'_, '_>,
+    t: &Triangle,
+    place: Place,
+    probed: Option<Probed>,
+    access: &BlockAccess,
+) {
+    let shaded = shaded(env.config, env.config.face(t), access);
+    let record = probed.map(|p| fragment::<D24>(env, place, &p, shaded, access));
     let Some(l) = &mut env.listening else { return };
     let event = l.gathered.blocks.len() as u32;
     l.gathered.texels.end_event(event, &env.config.textures);
@@ -123,28 +160,6 @@ pub(super) fn take_down<const D24: bool>(
             discarded,
         );
     }
-    let witness = match l.wants.witness {
-        Some(w) if wrote(&access) => look_at(env.target, env.config, place, w),
-        _ => 0,
-    };
-    l.gathered.blocks.push(BlockAccess {
-        draw,
-        primitive: t.primitive,
-        piece: u32::from(t.piece),
-        block: block_of(place),
-        front: t.is_front(),
-        witness,
-        ..access
-    });
-}
-
-fn block_of(place: Place) -> [u16; 2] {
-    [(place.x / 8) as u16, (place.y / 8) as u16]
-}
-
-fn wrote(access: &BlockAccess) -> bool {
-    let colors = access.color_write.iter().fold(0, |m, c| m | c);
-    (access.z_write | access.stencil_write | colors) != 0
 }
 
 /// Fragments that were given to the shader, run or not.
@@ -157,33 +172,6 @@ fn shaded(config: &DrawConfig<'_>, face: &StencilFace, access: &BlockAccess) -> 
     } else {
         access.covered & !(e.bounds | e.stencil | e.depth)
     }
-}
-
-/// What `w` says of the block as it is now.
-fn look_at(
-    target: &TileTarget<'_>,
-    config: &DrawConfig<'_>,
-    place: Place,
-    w: &dyn BlockWitness,
-) -> u64 {
-    let mut color = [ColorBlock::B8(&[0; 64]); MAX_COLOR_ATTACHMENTS];
-    let mut formats = [Format::R8Unorm; MAX_COLOR_ATTACHMENTS];
-    for (i, tile) in target.color.iter().enumerate() {
-        color[i] = tile.block(place.index);
-        formats[i] = config.targets[i].format;
-    }
-    let attachments = target.color.len();
-    let depth_stencil = target
-        .depth
-        .as_ref()
-        .map(|d| (&d.depth[place.index].0, &d.stencil[place.index].0));
-    w.after(&BlockView {
-        block: block_of(place),
-        inside: target.inside(place.x, place.y),
-        depth_stencil,
-        color: &color[..attachments],
-        formats: &formats[..attachments],
-    })
 }
 
 /// What became of the probed fragment.

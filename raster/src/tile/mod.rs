@@ -18,13 +18,15 @@ mod output;
 mod shade;
 mod stencil;
 mod target;
+mod witness;
 
 use block::{BlockStage, General};
 use lean::Lean;
 
 pub(crate) use config::{DrawConfig, StencilFace, TargetConfig};
-pub(crate) use listen::{Gathered, Listening};
+pub(crate) use listen::{Gathered, Listening, Turn};
 pub(crate) use target::{ColorTile, DepthTile, TileTarget};
+pub(crate) use witness::Untold;
 
 pub(crate) use crate::counters::COUNT;
 use crate::counters::{Accesses, Counters, EventCounters, FragmentCounters, TileCounters};
@@ -100,6 +102,8 @@ impl TileStageCounters {
 pub(crate) struct ChunkRef<'a> {
     pub(crate) chunk: &'a Chunk,
     pub(crate) shaded: &'a ShadedVertices,
+    /// Number of its first triangle among those of all chunks that run together.
+    pub(crate) first: u32,
 }
 
 /// One draw (or a part of one) for the tile stage.
@@ -127,7 +131,8 @@ impl Scratch {
     }
 }
 
-/// Runs all of `work` on one tile. What a listener wants is gathered.
+/// Runs all of `work` on one tile, after which the pass may have `ended`. What a listener
+/// wants is gathered.
 pub(crate) fn run_tile(
     level: SimdLevel,
     work: &[DrawWork<'_>],
@@ -135,8 +140,10 @@ pub(crate) fn run_tile(
     target: &mut TileTarget<'_>,
     scratch: &mut Scratch,
     mut listening: Option<(Wants<'_>, &mut Gathered)>,
+    ended: bool,
 ) {
     for w in work {
+        tell_left(level, w, target, &mut listening, w.draw as u32);
         for chunk in &w.chunks {
             let bin = chunk.chunk.bins.tile(tile_number);
             if bin.is_empty() {
@@ -147,6 +154,7 @@ pub(crate) fn run_tile(
                 config: w.config,
                 draw: w.draw as u32,
                 chunk,
+                triangle: 0,
                 target: &mut *target,
                 counters: &mut scratch.counters[w.draw],
                 outputs: &mut scratch.outputs,
@@ -158,6 +166,26 @@ pub(crate) fn run_tile(
             };
             with_lanes!(level, l => run_bin(l, &mut env, bin));
         }
+    }
+    if ended && let Some(w) = work.last() {
+        tell_left(level, w, target, &mut listening, u32::MAX);
+    }
+}
+
+/// Tells a listener who wants that of what the draw before `next` left in the tile, if
+/// there is one.
+fn tell_left(
+    level: SimdLevel,
+    work: &DrawWork<'_>,
+    target: &mut TileTarget<'_>,
+    listening: &mut Option<(Wants<'_>, &mut Gathered)>,
+    next: u32,
+) {
+    if let Some((wants, gathered)) = listening
+        && let Some(witness) = wants.left
+        && target.untold.is_of_another(next)
+    {
+        witness::tell_left(target, work.config, level, witness, &mut gathered.left);
     }
 }
 

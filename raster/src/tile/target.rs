@@ -1,6 +1,7 @@
 //! A tile's share of the attachments: disjoint slices, handed out before the
 //! workers start.
 
+use super::witness::Untold;
 use crate::format::{Format, from_stored};
 use crate::observer::ColorBlock;
 use crate::texture::{Block, Block4};
@@ -64,6 +65,8 @@ pub(crate) struct TileTarget<'a> {
     pub(crate) height: u32,
     pub(crate) depth: Option<DepthTile<'a>>,
     pub(crate) color: Vec<ColorTile<'a>>,
+    /// While somebody listens.
+    pub(crate) untold: Untold,
 }
 
 impl TileTarget<'_> {

@@ -4,8 +4,8 @@ use gnomon_raster::state::{
     ColorTargetState, DepthStencilState, PrimitiveState, ScissorRect, StencilOperation, Viewport,
 };
 use gnomon_raster::{
-    BlockAccess, ClientTraffic, Counters, Format, FragmentRecord, LoadOp, ShadedBlock, StoreOp,
-    TexelAccess,
+    BlockAccess, BlockLeft, ClientTraffic, Counters, Format, FragmentRecord, LoadOp, ShadedBlock,
+    StoreOp, TexelAccess,
 };
 
 use super::program::Program;
@@ -206,6 +206,8 @@ pub struct EventDetails {
     pub outputs: Vec<ShadedBlock>,
     /// Where `outputs` point.
     pub values: Vec<u32>,
+    /// What draws left in blocks, by draw, row and column; only the GPU tells.
+    pub left: Vec<BlockLeft>,
     /// The stencil operation of each of `fragments`; only the twin tells.
     pub operations: Vec<Option<StencilOperation>>,
     /// The probed pixel before and after load operations, before and after store

@@ -10,20 +10,32 @@ use std::sync::Arc;
 /// Bytes of a blob's entry in the list.
 const ENTRY: usize = 40;
 
+/// Bytes and their name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Blob {
+    name: [u8; 32],
+    bytes: Arc<[u8]>,
+}
+
 /// Blobs, by number.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blobs {
-    all: Vec<Arc<[u8]>>,
+    all: Vec<Blob>,
     numbers: BTreeMap<[u8; 32], u32>,
 }
 
 impl Blobs {
     /// The number of `bytes`, which are added where they are new.
     pub(crate) fn add(&mut self, bytes: &Arc<[u8]>) -> u32 {
+        self.add_named(hash(bytes), || bytes.clone())
+    }
+
+    fn add_named(&mut self, name: [u8; 32], bytes: impl FnOnce() -> Arc<[u8]>) -> u32 {
         let next = self.all.len() as u32;
-        let number = *self.numbers.entry(hash(bytes)).or_insert(next);
+        let number = *self.numbers.entry(name).or_insert(next);
         if number == next {
-            self.all.push(bytes.clone());
+            let bytes = bytes();
+            self.all.push(Blob { name, bytes });
         }
         number
     }
@@ -31,19 +43,21 @@ impl Blobs {
     /// A blob.
     pub(crate) fn get(&self, number: u32) -> Result<&Arc<[u8]>, String> {
         let found = self.all.get(number as usize);
-        found.ok_or_else(|| format!("blob {number} is none of the {} there are", self.all.len()))
+        found
+            .map(|b| &b.bytes)
+            .ok_or_else(|| format!("blob {number} is none of the {} there are", self.all.len()))
     }
 
     /// The section's data.
     pub(crate) fn encode(&self) -> Vec<u8> {
         let mut data = (self.all.len() as u32).to_le_bytes().to_vec();
         for blob in &self.all {
-            data.extend(hash(blob));
-            data.extend((blob.len() as u64).to_le_bytes());
+            data.extend(blob.name);
+            data.extend((blob.bytes.len() as u64).to_le_bytes());
         }
-        self.all
-            .iter()
-            .for_each(|blob| data.extend_from_slice(blob));
+        for blob in &self.all {
+            data.extend_from_slice(&blob.bytes);
+        }
         data
     }
 
@@ -65,12 +79,13 @@ impl Blobs {
             let (blob, left) = blob.ok_or_else(|| {
                 format!("blob {number} has {size} bytes, {} are left", bytes.len())
             })?;
-            if hash(blob) != name {
+            let found = hash(blob);
+            if found != name {
                 return Err(format!(
                     "blob {number} has another blake3 than it is listed with"
                 ));
             }
-            if blobs.add(&blob.into()) as usize != number {
+            if blobs.add_named(found, || blob.into()) as usize != number {
                 return Err(format!("blob {number} is there twice"));
             }
             bytes = left;

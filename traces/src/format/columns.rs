@@ -22,12 +22,15 @@ impl Writer {
         self.records += 1;
     }
 
+    #[inline]
     pub(crate) fn byte(&mut self, column: usize, byte: u8) {
         self.columns[column].push(byte);
     }
 
+    #[inline]
     pub(crate) fn number(&mut self, column: usize, mut n: u64) {
         let to = &mut self.columns[column];
+        // Nearly all are below 128.
         while n >= 0x80 {
             to.push(n as u8 | 0x80);
             n >>= 7;
@@ -36,6 +39,7 @@ impl Writer {
     }
 
     /// `to` as its difference from `from`.
+    #[inline]
     pub(crate) fn difference(&mut self, column: usize, from: u64, to: u64) {
         let d = to.wrapping_sub(from) as i64;
         self.number(column, (d << 1 ^ d >> 63) as u64);
@@ -43,16 +47,20 @@ impl Writer {
 
     /// Eight bytes.
     pub(crate) fn mask(&mut self, column: usize, mask: u64) {
-        self.columns[column].extend(mask.to_le_bytes());
+        self.columns[column].extend_from_slice(&mask.to_le_bytes());
     }
 
     pub(crate) fn finish(self) -> Vec<u8> {
-        let mut data = self.records.to_le_bytes().to_vec();
+        let size = self.columns.iter().map(|c| 8 + c.len()).sum::<usize>();
+        let mut data = Vec::with_capacity(12 + size);
+        data.extend(self.records.to_le_bytes());
         data.extend((self.columns.len() as u32).to_le_bytes());
         for column in &self.columns {
             data.extend((column.len() as u64).to_le_bytes());
         }
-        data.extend(self.columns.into_iter().flatten());
+        for column in &self.columns {
+            data.extend_from_slice(column);
+        }
         data
     }
 }

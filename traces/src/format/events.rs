@@ -20,6 +20,8 @@ const CODE_BYTES: usize = 5;
 const OTHERS: usize = 10;
 const DEPTHS: usize = 11;
 const WITNESS: usize = 15;
+/// The code's two bits of a mask that it does not tell.
+const OTHER: u64 = 2;
 /// Masks that have two bits of the code.
 const MASKS: usize = 8 + 2 * MAX_COLOR_ATTACHMENTS;
 /// The first bit behind them.
@@ -63,14 +65,23 @@ const ENDS: usize = 4;
 /// Writes the accesses of a pass.
 pub(crate) struct EventWriter {
     columns: Writer,
-    last: BlockAccess,
+    last: Place,
+}
+
+/// Of an access, what the next one is told apart from.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    draw: u32,
+    primitive: u32,
+    block: [u16; 2],
+    depths: [u32; 2],
 }
 
 impl EventWriter {
     pub(crate) fn new() -> Self {
         Self {
             columns: Writer::new(COLUMNS),
-            last: BlockAccess::default(),
+            last: Place::default(),
         }
     }
 
@@ -88,20 +99,25 @@ impl EventWriter {
         for k in 0..2 {
             c.difference(3 + k, last.block[k].into(), block.block[k].into());
         }
-        self.code(block);
-        let (c, last) = (&mut self.columns, &self.last);
-        for (k, [now, before]) in [[block.span, last.span], [block.stored, last.stored]]
-            .into_iter()
-            .enumerate()
-        {
-            c.difference(DEPTHS + 2 * k, before[0].into(), now[0].into());
-            c.difference(DEPTHS + 2 * k + 1, now[0].into(), now[1].into());
+        let depths = [block.span, block.stored];
+        for k in 0..2 {
+            let (least, greatest) = (u64::from(depths[k][0]), u64::from(depths[k][1]));
+            c.difference(DEPTHS + 2 * k, last.depths[k].into(), least);
+            c.difference(DEPTHS + 2 * k + 1, least, greatest);
         }
-        self.last = *block;
+        self.last = Place {
+            draw: block.draw,
+            primitive: block.primitive,
+            block: block.block,
+            depths: [block.span[0], block.stored[0]],
+        };
+        self.code(block);
     }
 
-    fn code(&mut self, block: &BlockAccess) {
-        let mut b = *block;
+    /// The code, and the masks that it does not tell. Plain loops: what iterators call
+    /// would be called for each mask.
+    fn code(&mut self, b: &BlockAccess) {
+        let c = &mut self.columns;
         let (covered, written) = (b.covered, b.written());
         let flags = [
             (covered == u64::MAX, FULL),
@@ -111,28 +127,24 @@ impl EventWriter {
             (b.hiz_write, HIZ_WRITE),
             (b.witness != 0, WITNESSED),
         ];
-        let mut code: u64 = flags.iter().filter(|(on, _)| *on).map(|(_, bit)| bit).sum();
-        let mut others = Vec::new();
-        if covered != u64::MAX {
-            others.push(covered);
+        let mut code = 0;
+        for i in 0..flags.len() {
+            code |= u64::from(flags[i].0) * flags[i].1;
         }
-        for (i, mask) in masks(&mut b).into_iter().enumerate() {
-            let kind = match *mask {
-                0 => 0,
-                m if m == covered => 1,
-                m if m == written && i >= ENDS => 3,
-                m => {
-                    others.push(m);
-                    2
-                }
-            };
+        if covered != u64::MAX {
+            c.mask(OTHERS, covered);
+        }
+        let masks = masks_of(b);
+        for i in 0..MASKS {
+            let kind = kind(masks[i], covered, written, i >= ENDS);
+            if kind == OTHER {
+                c.mask(OTHERS, masks[i]);
+            }
             code |= kind << (2 * i);
         }
-        let c = &mut self.columns;
         for k in 0..CODE_BYTES {
             c.byte(CODE + k, (code >> (8 * k)) as u8);
         }
-        others.into_iter().for_each(|m| c.mask(OTHERS, m));
         if b.witness != 0 {
             c.byte(WITNESS, b.witness as u8);
         }
@@ -140,6 +152,43 @@ impl EventWriter {
 
     pub(crate) fn finish(self) -> Vec<u8> {
         self.columns.finish()
+    }
+}
+
+/// The masks as [`masks`] orders them.
+#[inline]
+fn masks_of(b: &BlockAccess) -> [u64; MASKS] {
+    let [r0, r1, r2, r3] = b.color_read;
+    let [w0, w1, w2, w3] = b.color_write;
+    let e = &b.ended;
+    [
+        e.bounds,
+        e.stencil,
+        e.depth,
+        e.discarded,
+        b.z_read,
+        b.z_write,
+        b.stencil_read,
+        b.stencil_write,
+        r0,
+        r1,
+        r2,
+        r3,
+        w0,
+        w1,
+        w2,
+        w3,
+    ]
+}
+
+/// A mask's two bits of the code.
+#[inline]
+fn kind(mask: u64, covered: u64, written: u64, may_be_written: bool) -> u64 {
+    match mask {
+        0 => 0,
+        m if m == covered => 1,
+        m if m == written && may_be_written => 3,
+        _ => OTHER,
     }
 }
 

@@ -19,7 +19,7 @@ const MOST_RAW: u64 = 4 << 30;
 /// zstd cannot shrink anything further than this, so that a size that promises more lies.
 const MOST_RATIO: u64 = 1 << 16;
 /// Level of compression: what it gains beyond costs more time than the frame.
-const LEVEL: i32 = 3;
+const LEVEL: i32 = 1;
 
 /// How a section is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

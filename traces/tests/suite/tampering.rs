@@ -2,9 +2,9 @@
 
 use gnomon_raster::GpuConfig;
 use gnomon_shaders::table;
-use gnomon_traces::{ReplayDepth, Trace, TraceError, replay};
+use gnomon_traces::{Meta, RecordOptions, ReplayDepth, Trace, TraceError, record, replay};
 
-use crate::forge::{forged, put_together, take_apart};
+use crate::forge::{Part, forged, put_together, take_apart};
 use crate::golden::goldens;
 use crate::user_frame;
 
@@ -111,11 +111,40 @@ fn a_changed_uniform_is_found_at_its_draw() {
     assert_eq!(draw.shader, "surface.constant 1");
     let [x, y] = draw.first.unwrap();
     assert!(draw.pixels > 0 && [x / 64, y / 64] == draw.tile.map(u32::from));
+    assert_eq!(draw.apart, Some(0), "other values, in the same pixels");
     let text = difference.to_string();
     assert!(
         text.contains("draw 0 'opaque'") && text.contains("tile (0,0)"),
         "{text}"
     );
+}
+
+/// A draw whose first corner was elsewhere: pixels are written only then or only now, and
+/// the first of them is named.
+#[test]
+fn pixels_that_were_written_only_then_are_counted() {
+    let file = user_frame::trace().to_bytes().to_vec();
+    // What the moved frame leaves, with the commands of the one that was not.
+    let moved = record(
+        Meta::new("user"),
+        &user_frame::frame_moved_by(0.25),
+        RecordOptions::default(),
+    )
+    .unwrap();
+    let mut parts = take_apart(&file);
+    for other in take_apart(moved.to_bytes()) {
+        let same = |p: &&mut Part| (p.tag, p.part) == (other.tag, other.part);
+        if [*b"HASH", *b"TRAF", *b"TEXL", *b"COUN"].contains(&other.tag) {
+            parts.iter_mut().find(same).unwrap().data = other.data;
+        }
+    }
+    let trace = Trace::read(put_together(&parts)).unwrap();
+    let done = replay(&trace, 0, &table(), GpuConfig::default(), ReplayDepth::Ends).unwrap();
+    let draw = done.difference.unwrap().draw.unwrap();
+    assert_eq!((draw.draw, draw.label.as_str()), (0, "opaque"));
+    let apart = draw.apart.unwrap();
+    assert!(apart > 0 && apart < draw.pixels, "{draw:?}");
+    assert!(draw.first.is_some(), "{draw:?}");
 }
 
 #[test]

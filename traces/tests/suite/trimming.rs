@@ -4,6 +4,7 @@ use gnomon_raster::GpuConfig;
 use gnomon_shaders::table;
 use gnomon_traces::{Keep, ReplayDepth, Trace, TraceError, replay, trim};
 
+use crate::forge::{put_together, take_apart};
 use crate::golden::goldens;
 use crate::user_frame;
 
@@ -73,6 +74,46 @@ fn what_is_not_there_cannot_be_kept() {
         assert!(
             matches!(refused, TraceError::Range { .. }),
             "{keep:?}: {refused}"
+        );
+    }
+}
+
+/// What is cut is compared with what was recorded, here of another frame in each place.
+#[test]
+fn a_cut_that_would_show_something_else_is_refused() {
+    let file = user_frame::trace().to_bytes().to_vec();
+    let refused = |tag: &[u8; 4], part: u32, byte: &dyn Fn(usize) -> usize| {
+        let mut parts = take_apart(&file);
+        let found = parts.iter_mut().find(|p| p.tag == *tag && p.part == part);
+        let data = &mut found.unwrap().data;
+        let at = byte(data.len());
+        data[at] ^= 1;
+        let forged = Trace::read(put_together(&parts)).unwrap();
+        let cut = trim(&forged, &Keep::Frames(0..1), &table(), GpuConfig::default());
+        match cut.unwrap_err() {
+            TraceError::Trimmed { frame, pass, what } => {
+                assert_eq!(frame, 0);
+                format!("{what} in pass {pass}")
+            }
+            other => panic!("{}: {other}", String::from_utf8_lossy(tag)),
+        }
+    };
+    // The low bits of the first hash of a pass's end, and of the last hash of a tile.
+    assert_eq!(refused(b"HASH", 0, &|_| 2), "what it leaves in pass 0");
+    assert_eq!(
+        refused(b"HASH", 0, &|n| n - 2),
+        "what its draws leave in pass 1"
+    );
+    // The last counter of the last draw.
+    let counted = refused(b"COUN", 0, &|n| n - 1);
+    assert_eq!(counted, "what its draws count in pass 1");
+    // The class that the last event saw; how often the last texels were read.
+    for (tag, pass) in [(b"TRAF", 0), (b"TRAF", 1), (b"TEXL", 1)] {
+        let found = refused(tag, pass, &|n| n - 1);
+        let wanted = format!("in pass {pass}");
+        assert!(
+            found.starts_with("access ") && found.ends_with(&wanted),
+            "{found}"
         );
     }
 }

@@ -41,6 +41,11 @@ fn color(texture: TextureId) -> ColorAttachment {
 
 /// Triangles over one another, then a copy of an image.
 pub(crate) fn frame() -> Recording {
+    frame_moved_by(0.0)
+}
+
+/// The same with its first corner farther right.
+pub(crate) fn frame_moved_by(right: f32) -> Recording {
     let mut frame = Recording::default();
     let [w, h] = SIZE;
     let image = |label, format| TextureDescriptor::d2(label, format, w, h);
@@ -57,12 +62,12 @@ pub(crate) fn frame() -> Recording {
         .write(source, Subresource::default(), &texels)
         .unwrap();
     frame.name_output("color", target).unwrap();
-    frame.list.passes.push(triangles(target, depth));
+    frame.list.passes.push(triangles(target, depth, right));
     frame.list.passes.push(copying(source, copy));
     frame
 }
 
-fn triangles(target: TextureId, depth: TextureId) -> RenderPass {
+fn triangles(target: TextureId, depth: TextureId, right: f32) -> RenderPass {
     let corner = |i: u32| {
         let [x, y] = [
             (i * 5 % 7) as f32 / 3.5 - 1.0,
@@ -70,7 +75,8 @@ fn triangles(target: TextureId, depth: TextureId) -> RenderPass {
         ];
         [x, y, (i % 5) as f32 / 5.0, 1.0]
     };
-    let corners: Vec<[f32; 4]> = (0..12).map(corner).collect();
+    let mut corners: Vec<[f32; 4]> = (0..12).map(corner).collect();
+    corners[0][0] += right;
     let vertices = Arc::new(VertexBuffer {
         data: corners.concat(),
         stride: 4,

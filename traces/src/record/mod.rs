@@ -1,22 +1,18 @@
-//! Recording: a frame is drawn twice, once as it is, for hashes and counters, and once
-//! without skipping, observed, for its traffic.
+//! Recording: what a frame is, and what its two runs found.
 
-use gnomon_raster::{
-    AccessBatch, AccessObserver, Gpu, GpuConfig, PassReport, Recording, SubmitReport, Wants,
-};
+mod runs;
+
+use gnomon_raster::{GpuConfig, PassReport, Recording, SubmitReport};
+use runs::Runs;
 
 use crate::error::TraceError;
 use crate::format::blob::Blobs;
 use crate::format::encode::{Encoded, bytes_of, encode};
-use crate::format::events::{EventWriter, TexelWriter};
 use crate::format::section::{Codec, Section};
 use crate::format::{counters, file, v1};
 use crate::frozen::freeze;
-use crate::hashes::{DrawHashes, Hashing};
 use crate::meta::{Meta, Mode};
-use crate::run;
 use crate::trace::{BLOB, COUN, FRAM, HASH, META, SHAD, TEXL, TRAF, Trace};
-use crate::witness::Witness;
 
 /// How to record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,24 +137,28 @@ impl Recorder {
         };
         let written = frozen.as_ref().unwrap_or(recording);
         let Encoded { frame, shaders } = encode(written, &mut self.blobs)?;
-        let mut hashes = v1::Hashes::default();
-        let skipping = self.draw(recording, &mut hashes)?;
+        let runs = runs::run(recording, self.options.gpu, self.options.traffic);
+        let Runs { drawn, observed } = runs.map_err(|e| self.refused(e))?;
+        let passes = |r: &SubmitReport| r.passes.iter().map(pass_counts).collect();
+        let mut hashes = v1::Hashes {
+            ends: drawn.ends,
+            draws: Vec::new(),
+        };
         let mut counts = v1::Counts {
-            skipping: skipping.passes.iter().map(pass_counts).collect(),
+            skipping: passes(&drawn.report),
             unskipped: Vec::new(),
         };
-        let mut traffic = None;
-        if self.options.traffic {
-            let (report, draws, observed) = self.observe(recording)?;
-            counts.unskipped = report.passes.iter().map(pass_counts).collect();
-            hashes.draws = draws.lists();
-            traffic = Some(observed);
+        let mut traffic = Vec::new();
+        if let Some(observed) = observed {
+            counts.unskipped = passes(&observed.report);
+            hashes.draws = observed.hashes.lists();
+            traffic = observed.passes;
         }
         self.section(SHAD, 0, bytes_of(&shaders));
         self.section(FRAM, 0, bytes_of(&frame));
         self.section(HASH, 0, bytes_of(&hashes));
         self.section(COUN, 0, bytes_of(&counts));
-        for (number, pass) in traffic.into_iter().flatten().enumerate() {
+        for (number, pass) in traffic.into_iter().enumerate() {
             self.section(TRAF, number, pass.events);
             self.section(TEXL, number, pass.texels);
         }
@@ -169,7 +169,7 @@ impl Recorder {
     /// The trace.
     ///
     /// # Errors
-    /// None at present.
+    /// Two sections of the file would be the same, which is a fault of this crate.
     pub fn finish(self) -> Result<Trace, TraceError> {
         let meta = Meta {
             producer: match self.meta.producer.as_str() {
@@ -184,60 +184,18 @@ impl Recorder {
             },
             ..self.meta
         };
-        let meta = serde_json::to_vec(&meta).expect("plain data in memory");
+        let said = serde_json::to_vec(&meta).expect("plain data in memory");
         let head = [
-            pack(META, 0, 0, meta),
+            pack(META, 0, 0, said),
             pack(BLOB, 0, 0, self.blobs.encode()),
         ];
         let sections = head.iter().chain(&self.packed);
-        Trace::read(file::assemble(sections.map(Vec::as_slice)))
+        let file = file::assemble(sections.map(Vec::as_slice));
+        Trace::made(file, meta, self.blobs)
     }
 
     fn section(&mut self, tag: [u8; 4], part: usize, data: Vec<u8>) {
         self.packed.push(pack(tag, self.frames, part as u32, data));
-    }
-
-    fn gpu(&self, skip: bool) -> Result<Gpu, gnomon_raster::Error> {
-        Gpu::new(GpuConfig {
-            skip,
-            ..self.options.gpu
-        })
-    }
-
-    /// The frame as it is.
-    fn draw(
-        &self,
-        recording: &Recording,
-        hashes: &mut v1::Hashes,
-    ) -> Result<SubmitReport, TraceError> {
-        let mut run = || {
-            run::draw_passes(&mut self.gpu(true)?, recording, |gpu, _, pass| {
-                hashes.ends.push(run::end_hashes(gpu, pass)?);
-                Ok(())
-            })
-        };
-        run().map_err(|source| self.refused(source))
-    }
-
-    /// The frame without skipping, and its traffic.
-    fn observe(
-        &self,
-        recording: &Recording,
-    ) -> Result<(SubmitReport, DrawHashes, Vec<PassTraffic>), TraceError> {
-        let mut traffic = TrafficWriter::new(recording);
-        let wants = Wants {
-            depth_ranges: true,
-            texels: true,
-            witness: Some(&Witness),
-            ..Wants::default()
-        };
-        let mut run = || {
-            let mut gpu = self.gpu(false)?;
-            gpu.load(recording)?;
-            gpu.submit_observed(&recording.list, wants, &mut traffic)
-        };
-        let report = run().map_err(|source| self.refused(source))?;
-        Ok((report, traffic.hashes.done(), traffic.passes))
     }
 
     fn refused(&self, source: gnomon_raster::Error) -> TraceError {
@@ -264,66 +222,5 @@ fn pass_counts(pass: &PassReport) -> v1::PassCounts {
     v1::PassCounts {
         clear: counters::clear_list(&pass.clear),
         draws: draws.map(|d| counters::list(&d.counters)).collect(),
-    }
-}
-
-/// What was heard of a pass.
-struct PassTraffic {
-    events: Vec<u8>,
-    texels: Vec<u8>,
-}
-
-/// Writes down what it hears.
-struct TrafficWriter {
-    hashes: Hashing,
-    passes: Vec<PassTraffic>,
-    /// Of the pass that is under way.
-    open: Open,
-}
-
-struct Open {
-    events: EventWriter,
-    texels: TexelWriter,
-    heard: u64,
-}
-
-impl Default for Open {
-    fn default() -> Self {
-        Self {
-            events: EventWriter::new(),
-            texels: TexelWriter::new(),
-            heard: 0,
-        }
-    }
-}
-
-impl TrafficWriter {
-    fn new(recording: &Recording) -> Self {
-        let passes = recording.list.passes.iter();
-        Self {
-            hashes: Hashing::new(passes.map(|p| p.draws.len())),
-            passes: Vec::new(),
-            open: Open::default(),
-        }
-    }
-}
-
-impl AccessObserver for TrafficWriter {
-    fn batch(&mut self, pass: usize, batch: &AccessBatch<'_>) {
-        self.hashes.batch(pass, batch);
-        let open = &mut self.open;
-        batch.blocks.iter().for_each(|b| open.events.push(b));
-        for texel in batch.texels {
-            open.texels.push(open.heard + u64::from(texel.event), texel);
-        }
-        open.heard += batch.blocks.len() as u64;
-    }
-
-    fn end(&mut self, _: usize, _: &PassReport) {
-        let open = core::mem::take(&mut self.open);
-        self.passes.push(PassTraffic {
-            events: open.events.finish(),
-            texels: open.texels.finish(),
-        });
     }
 }

@@ -42,6 +42,8 @@ pub enum PassRole {
     Prefilter,
     /// Shadows looked up in light views.
     LookUp,
+    /// Rays from receivers to lights.
+    ShadowRays,
     /// One picture added to another.
     AddPicture,
     /// Anything else.

@@ -2,13 +2,17 @@
 //!
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
+//! * [`backprojection`]: texels of light views projected on the light
 //! * [`cones`]: shadows of spheres from the patches of a light view
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
 //! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`convolution`]: shadow maps that are filtered before they are compared
+//! * [`moments`]: shadow maps filtered as means of functions of depth
 //! * [`penumbra`]: penumbra wedges of papers I and II
+//! * [`planar_shadows`]: counts of hidden points over planes
 //! * [`shadow_maps`]: shadows looked up in light views
+//! * [`shadow_rays`]: rays to points of the light
 //! * [`smoothies`]: geometry that softens the edges of shadow maps
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
@@ -21,6 +25,7 @@
 //! of its family, and a line with name and version in `stages!` below. Raise the
 //! version when what it computes changes.
 
+pub mod backprojection;
 mod bounded;
 pub mod cones;
 pub mod convolution;
@@ -28,8 +33,11 @@ pub mod coverage;
 pub mod coverage_table;
 pub mod deferred;
 pub mod light_view;
+pub mod moments;
 pub mod penumbra;
+pub mod planar_shadows;
 pub mod shadow_maps;
+pub mod shadow_rays;
 pub mod smoothies;
 pub mod soft_volumes;
 pub mod split_volumes;
@@ -148,6 +156,18 @@ stages! {
         deferred::obscured::ObscuredRadiance: "deferred.obscured-radiance" 1,
         deferred::obscured::DistantVisibility: "deferred.distant-visibility" 1,
         deferred::lit::LessObscured: "deferred.less-obscured" 1,
+        backprojection::region::LeastOfFour: "backprojection.least-of-four" 1,
+        shadow_maps::Shadow<backprojection::Backprojection<backprojection::cover::AreaSum>>:
+            "backprojection.area-sum" 1,
+        shadow_maps::Shadow<backprojection::Backprojection<backprojection::cover::BitField>>:
+            "backprojection.bit-field" 1,
+        shadow_rays::ShadowRays: "shadow-rays" 1,
+        planar_shadows::PlanarShadow: "planar-shadows" 1,
+        shadow_maps::Shadow<moments::occluder_plane::OccluderPlane>: "moments.occluder-plane" 1,
+        moments::image::MomentImage: "moments.image" 1,
+        shadow_maps::Shadow<moments::filter::FixedKernel>: "moments.fixed-kernel" 1,
+        shadow_maps::Shadow<moments::filter::LightKernel>: "moments.light-kernel" 1,
+        shadow_maps::Shadow<moments::variance_soft::VarianceSoft>: "moments.variance-soft" 1,
     }
 }
 
@@ -159,6 +179,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 48);
+        assert_eq!(table.fragment_shaders().count(), 58);
     }
 }

@@ -63,13 +63,16 @@ impl<L: Lanes> Receiver<L> {
     /// Stored depths below this one block at the centre of texel (column, row).
     #[inline(always)]
     fn reference_at(&self, [column, row]: [I32<L>; 2]) -> F32<L> {
+        self.reference_over([column.to_f32() + 0.5, row.to_f32() + 0.5])
+    }
+
+    /// The same at any place in the picture, in texels.
+    #[inline(always)]
+    pub(crate) fn reference_over(&self, place: [F32<L>; 2]) -> F32<L> {
         let Some(plane) = &self.plane else {
             return self.reference;
         };
-        let [x, y] = [
-            column.to_f32() + 0.5 - self.at[0],
-            row.to_f32() + 0.5 - self.at[1],
-        ];
+        let [x, y] = [place[0] - self.at[0], place[1] - self.at[1]];
         let zero = F32::splat(x.lanes(), 0.0);
         let slope = x * plane.slope[0] + y * plane.slope[1];
         let slope = slope.max(zero).min(F32::splat(x.lanes(), STEEPEST));
@@ -159,6 +162,16 @@ impl ReceiverPlanes {
 
 /// How the share of the light that is seen follows from depths near a receiver.
 pub trait ShadowFilter: Send + Sync {
+    /// Textures that it reads, from the slot after those of all filters.
+    fn textures(&self) -> usize {
+        0
+    }
+
+    /// Names of what it counts.
+    fn counts(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// The share that is seen, 0..=1. May discard lanes that are fully lit: what is
     /// drawn to was cleared to that.
     fn lit<L: Lanes>(
@@ -204,9 +217,11 @@ uniforms!(Shadow<F> {
 
 impl<F: ShadowFilter> FragmentShader for Shadow<F> {
     fn outputs(&self) -> FragmentOutputs {
+        let own = if self.planes.is_some() { 3 } else { 2 };
         FragmentOutputs {
             discards: true,
-            textures: if self.planes.is_some() { 3 } else { 2 },
+            textures: own + self.filter.textures(),
+            counts: self.filter.counts(),
             ..FragmentOutputs::default()
         }
     }
@@ -254,7 +269,7 @@ impl<F: ShadowFilter> FragmentShader for Shadow<F> {
 
 /// Whether the texel at (column, row) blocks, and its stored depth.
 #[inline(always)]
-fn blocker<L: Lanes>(
+pub(crate) fn blocker<L: Lanes>(
     l: L,
     f: &mut Fragment<'_, L>,
     receiver: &Receiver<L>,
@@ -403,22 +418,12 @@ impl ShadowFilter for SampledKernel {
         receiver: &Receiver<L>,
     ) -> F32<L> {
         let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
-        let near = F32::splat(l, mapping.range.near);
-        let half = kernel(mapping, self.light_half, near, receiver);
-        let (mut count, mut sum) = (zero, zero);
-        for place in self.search.iter() {
-            let at = sample_at(receiver, half, *place);
-            let (blocked, depth) = blocker(l, f, receiver, at);
-            count = count + blocked.select_f32(one, zero);
-            sum = sum + blocked.select_f32(depth, zero);
-        }
-        let some = count.gt(zero);
+        let (some, distance) = mean_blocker(l, f, mapping, receiver, self.light_half, &self.search);
         f.discard(!some);
         if !some.any() {
             return one;
         }
-        let blocker = mapping.range.distance(sum / count.max(one));
-        let half = kernel(mapping, self.light_half, blocker, receiver);
+        let half = kernel(mapping, self.light_half, distance, receiver);
         let mut blocked = zero;
         for place in self.filter.iter() {
             blocked = blocked + blocks(l, f, receiver, sample_at(receiver, half, *place));
@@ -427,10 +432,34 @@ impl ShadowFilter for SampledKernel {
     }
 }
 
+/// Whether some of the points within W(near) block, and their mean distance.
+#[inline(always)]
+pub(crate) fn mean_blocker<L: Lanes>(
+    l: L,
+    f: &mut Fragment<'_, L>,
+    mapping: &LightMapping,
+    receiver: &Receiver<L>,
+    light_half: [f32; 2],
+    search: &[[f32; 2]],
+) -> (Mask<L>, F32<L>) {
+    let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
+    let near = F32::splat(l, mapping.range.near);
+    let half = kernel(mapping, light_half, near, receiver);
+    let (mut count, mut sum) = (zero, zero);
+    for place in search {
+        let at = sample_at(receiver, half, *place);
+        let (blocked, depth) = blocker(l, f, receiver, at);
+        count = count + blocked.select_f32(one, zero);
+        sum = sum + blocked.select_f32(depth, zero);
+    }
+    let distance = mapping.range.distance(sum / count.max(one));
+    (count.gt(zero), distance)
+}
+
 /// Half widths of the kernel for blockers at a distance, in texels; half a texel
 /// at least.
 #[inline(always)]
-fn kernel<L: Lanes>(
+pub(crate) fn kernel<L: Lanes>(
     mapping: &LightMapping,
     light_half: [f32; 2],
     blocker: F32<L>,
@@ -528,17 +557,18 @@ fn blockers<L: Lanes>(
 
 /// Texels of a kernel along one axis, without those outside the picture, where
 /// nothing is in the way.
-struct Span<L: Lanes> {
+pub(crate) struct Span<L: Lanes> {
     low: F32<L>,
-    high: F32<L>,
-    first: F32<L>,
+    /// Texels below this one are some of its.
+    pub(crate) high: F32<L>,
+    pub(crate) first: F32<L>,
     /// The most that any lane has.
-    count: i32,
+    pub(crate) count: i32,
 }
 
 impl<L: Lanes> Span<L> {
     #[inline(always)]
-    fn new(middle: F32<L>, half: F32<L>, size: f32, wanted: Mask<L>) -> Self {
+    pub(crate) fn new(middle: F32<L>, half: F32<L>, size: f32, wanted: Mask<L>) -> Self {
         let low = (middle - half).clamp(0.0, size);
         let high = (middle + half).clamp(0.0, size);
         let first = low.floor();

@@ -119,6 +119,7 @@ fn capabilities(c: Capabilities) -> Json {
             Source::Nothing => "nothing",
             Source::Silhouettes => "silhouettes",
             Source::LightViews => "light-views",
+            Source::Rays => "rays",
             Source::Techniques => "techniques",
         },
         "wedges": match c.wedges {

@@ -23,6 +23,8 @@ pub enum Source {
     Silhouettes,
     /// Pictures taken from the light: any mesh casts.
     LightViews,
+    /// Rays to the light: any mesh casts.
+    Rays,
     /// Other techniques, whose needs are its own.
     Techniques,
 }
@@ -106,6 +108,15 @@ impl Capabilities {
         Self {
             shadows,
             source: Source::LightViews,
+            ..Self::UNSHADOWED
+        }
+    }
+
+    /// Hard or soft shadows of any light by rays.
+    pub const fn of_rays(shadows: ShadowKind) -> Self {
+        Self {
+            shadows,
+            source: Source::Rays,
             ..Self::UNSHADOWED
         }
     }

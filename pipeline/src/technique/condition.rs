@@ -43,7 +43,7 @@ impl LightFact {
         }
     }
 
-    fn holds(self, shape: &LightShape) -> bool {
+    pub(crate) fn holds(self, shape: &LightShape) -> bool {
         match self {
             Self::Sphere => matches!(shape, LightShape::Sphere { .. }),
             Self::Extended => !matches!(

@@ -158,6 +158,16 @@ pub enum TechniqueError {
         /// The lights taken.
         valid: &'static str,
     },
+    /// More than its textures can hold.
+    #[error("technique '{technique}' takes {most} triangles of casters; the scene has {given}")]
+    TooManyTriangles {
+        /// The technique.
+        technique: &'static str,
+        /// Triangles that cast.
+        given: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// A caster that is not closed.
     #[error(transparent)]
     RefusedCaster(#[from] RefusedCaster),

@@ -44,6 +44,8 @@ pub enum PassRole {
     LookUp,
     /// Light of vertices, and of surfaces from it.
     Radiance,
+    /// Rays from receivers to lights.
+    ShadowRays,
     /// One picture added to another.
     AddPicture,
     /// Anything else.

@@ -6,7 +6,7 @@
 use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps};
 
 use crate::parts::frame_settings::FrameSettings;
-use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Sources};
+use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Planes, Sources};
 use crate::technique::{
     Capabilities, Condition, Frame, Param, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
 };
@@ -98,7 +98,11 @@ impl Technique for Pcf {
         let margin = Margin {
             bias: 0.5,
             slope: if width > 1 { 0.0 } else { 0.5 },
-            planes: width > 1,
+            planes: if width > 1 {
+                Planes::Always
+            } else {
+                Planes::Far
+            },
         };
         let mapped = Mapped {
             name: self.name(),

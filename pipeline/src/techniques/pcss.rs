@@ -21,7 +21,7 @@ use gnomon_shaders::shadow_maps::{SampledKernel, WholeKernel};
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::horizon::HORIZON;
 use crate::parts::light_samples::Pattern;
-use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Sources};
+use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Planes, Sources};
 use crate::technique::{
     Capabilities, Condition, Frame, Param, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
 };
@@ -127,7 +127,7 @@ impl PcssSettings {
 const MARGIN: Margin = Margin {
     bias: 0.5,
     slope: 1.0,
-    planes: false,
+    planes: Planes::Far,
 };
 
 impl Technique for Pcss {

@@ -23,7 +23,7 @@ impl Source {
     /// Depth 0..=1, NaN as 1, and which lanes hold a texel and not the zeros before
     /// the first.
     #[inline(always)]
-    fn depth<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) -> (F32<L>, Mask<L>) {
+    pub(crate) fn depth<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) -> (F32<L>, Mask<L>) {
         let first = if self.exclusive { 1 } else { 0 };
         let [x, y] = self.origin;
         let x = f.column() - I32::splat(l, x as i32 + first);
@@ -133,7 +133,7 @@ impl FragmentShader for DepthImage {
 
 /// The nearest integer of a value from 0 to 2³¹ − 1.
 #[inline(always)]
-fn set_integer<L: Lanes>(f: &mut Fragment<'_, L>, attachment: usize, value: F32<L>) {
+pub(crate) fn set_integer<L: Lanes>(f: &mut Fragment<'_, L>, attachment: usize, value: F32<L>) {
     let integer = value.round_ties_even().to_i32().to_u32();
     f.set_color_uint(attachment, integer);
 }

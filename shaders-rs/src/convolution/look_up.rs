@@ -450,8 +450,9 @@ impl IntegerTables {
         sum
     }
 
+    /// The mean of the only channel of tile `tile`.
     #[inline(always)]
-    fn mean<L: Lanes>(
+    pub fn mean<L: Lanes>(
         &self,
         l: L,
         f: &mut Fragment<'_, L>,

@@ -16,7 +16,7 @@ pub const MAX_TEXTURES: usize = 4;
 
 /// A texel of a level, in a function of its own for all shaders.
 #[inline(always)]
-pub(super) fn texel_at<L: Lanes>(
+pub(crate) fn texel_at<L: Lanes>(
     l: L,
     f: &mut Fragment<'_, L>,
     slot: usize,

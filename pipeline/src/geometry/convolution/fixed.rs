@@ -21,6 +21,15 @@ impl FixedPoint {
         }
     }
 
+    /// For sums over no more than `texels` texels, at least one: where boxes are known to
+    /// be smaller than the tile, more bits are left for each.
+    pub fn of_box(texels: u64) -> Self {
+        let largest = u64::from(u32::MAX) / texels.max(1);
+        Self {
+            largest: (largest as u32).clamp(1, (1 << MAX_FIXED_BITS) - 1),
+        }
+    }
+
     /// What 1 is stored as.
     pub fn largest(&self) -> u32 {
         self.largest
@@ -60,6 +69,13 @@ mod tests {
                 capped || 2 * (largest + 1) * side * side > 1 << 32,
                 "{side}"
             );
+        }
+        for texels in [0, 1, 255, 256, 257, 1 << 20, 1 << 32, 1 << 40] {
+            let largest = u64::from(FixedPoint::of_box(texels).largest());
+            let fits = largest * texels < 1 << 32;
+            assert!(largest == 1 || fits, "{texels}");
+            let capped = largest == (1 << MAX_FIXED_BITS) - 1;
+            assert!(capped || (largest + 1) * texels >= 1 << 32, "{texels}");
         }
         assert_eq!(FixedPoint::of_tile(512).largest(), (1 << 14) - 1);
     }

@@ -4,3 +4,4 @@ pub(crate) mod light_view;
 pub(crate) mod lit_tiles;
 pub(crate) mod mapped;
 pub(crate) mod pictured;
+pub(crate) mod tiles;

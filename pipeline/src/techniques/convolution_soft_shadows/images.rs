@@ -6,13 +6,12 @@ use gnomon_shaders::convolution::{Atlas, Encoding};
 
 use super::settings::{Filter, MAP_SIZE, Settings};
 use crate::geometry::convolution::FixedPoint;
+use crate::parts::maps::tiles::Tiles;
 use crate::technique::TechniqueError;
 
 /// Textures of one size that are treated together, tile by tile.
 pub(super) struct Group {
-    pub(super) atlas: Atlas,
-    /// Tiles that hold something.
-    pub(super) tiles: usize,
+    pub(super) tiles: Tiles,
     pub(super) textures: Vec<ImageTexture>,
 }
 
@@ -26,14 +25,13 @@ pub(super) struct ImageTexture {
 
 impl Group {
     fn create(
-        atlas: Atlas,
-        tiles: usize,
+        tiles: Tiles,
         filter: Filter,
         kinds: &[(&str, Format, Encoding)],
         recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
-        let [width, height] = atlas.size();
-        let levels = atlas.side.ilog2();
+        let [width, height] = tiles.atlas.size();
+        let levels = tiles.atlas.side.ilog2();
         let mut create = |&(label, format, encoding): &(&str, Format, Encoding)| {
             let main = TextureDescriptor::d2(label, format, width, height);
             let beside = TextureDescriptor::d2(&format!("{label} aside"), format, width, height);
@@ -69,7 +67,6 @@ impl Group {
             })
         };
         Ok(Self {
-            atlas,
             tiles,
             textures: kinds.iter().map(&mut create).collect::<Result<_, _>>()?,
         })
@@ -79,7 +76,7 @@ impl Group {
     pub(super) fn images(&self, number: usize, slot: usize) -> Images {
         Images {
             slot,
-            atlas: self.atlas,
+            atlas: self.tiles.atlas,
             encoding: self.textures[number].encoding,
         }
     }
@@ -105,19 +102,22 @@ impl BasisTextures {
         } else {
             pairs
         };
-        let atlas = atlas(technique, settings.side, tiles as u32)?;
-        let single = Atlas {
-            columns: 1,
-            rows: 1,
-            ..atlas
+        let tiles = tiles_of(technique, settings.side, tiles)?;
+        let single = Tiles {
+            atlas: Atlas {
+                columns: 1,
+                rows: 1,
+                ..tiles.atlas
+            },
+            count: 1,
         };
         let [csm, csm_z, depth] = formats(settings);
         let (filter, series) = (settings.filter, [("csm", csm), ("csm-z", csm_z)]);
         let series = series.map(|(label, (format, encoding))| (label, format, encoding));
         let depth = [("csm depth", depth.0, depth.1)];
         Ok(Self {
-            series: Group::create(atlas, tiles, filter, &series, recording)?,
-            depth: Group::create(single, 1, filter, &depth, recording)?,
+            series: Group::create(tiles, filter, &series, recording)?,
+            depth: Group::create(single, filter, &depth, recording)?,
         })
     }
 }
@@ -145,25 +145,14 @@ fn formats(settings: &Settings) -> [(Format, Encoding); 3] {
     }
 }
 
-/// Tiles in rows as long as textures may be; their number is a power of two, so that
-/// borders between them stay exact in coordinates.
-fn atlas(technique: &'static str, side: u32, tiles: u32) -> Result<Atlas, TechniqueError> {
-    let most = gnomon_raster::MAX_TEXTURE_SIZE / side;
-    let columns = tiles.next_power_of_two().min(most);
-    let rows = tiles.div_ceil(columns).next_power_of_two();
-    if rows > most {
-        return Err(TechniqueError::BadValue {
-            technique,
-            key: MAP_SIZE.info.name,
-            value: side.to_string(),
-            valid: "up to 1024 with filter=sat-u32 and m above 8: textures end at 8192 texels"
-                .to_owned(),
-        });
-    }
-    Ok(Atlas {
-        side,
-        columns,
-        rows,
+/// Tiles in rows as long as textures may be.
+fn tiles_of(technique: &'static str, side: u32, count: usize) -> Result<Tiles, TechniqueError> {
+    Tiles::arranged(side, count).ok_or_else(|| TechniqueError::BadValue {
+        technique,
+        key: MAP_SIZE.info.name,
+        value: side.to_string(),
+        valid: "up to 1024 with filter=sat-u32 and m above 8: textures end at 8192 texels"
+            .to_owned(),
     })
 }
 

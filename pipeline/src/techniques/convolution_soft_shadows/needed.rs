@@ -3,51 +3,7 @@
 
 use super::settings::Filter;
 use crate::parts::maps::light_view::Reads;
-
-/// Texels from `begin` to before `end`, of a tile of `side` texels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Texels {
-    pub(super) begin: [u32; 2],
-    pub(super) end: [u32; 2],
-    pub(super) side: u32,
-}
-
-impl Texels {
-    /// Of the whole tile.
-    pub(super) fn all(side: u32) -> Self {
-        Self {
-            begin: [0; 2],
-            end: [side; 2],
-            side,
-        }
-    }
-
-    /// The texels that a filter at coordinates from `low` to `high` of 0..1 reads at
-    /// this level, and one more on each side.
-    fn read(reads: &Reads, side: u32) -> Self {
-        let texel = |at: f64, more: f64| {
-            let texel = (at * f64::from(side)).floor() + more;
-            texel.clamp(0.0, f64::from(side)) as u32
-        };
-        // A picture that no kernel touches still has a texel.
-        let begin = reads.low.map(|at| texel(at, -2.0).min(side - 1));
-        let high = reads.high.map(|at| texel(at, 3.0));
-        Self {
-            begin,
-            end: [0, 1].map(|k| high[k].max(begin[k] + 1)),
-            side,
-        }
-    }
-
-    /// These and the four texels under each of the next level's.
-    fn with_those_under(self, next: &Self) -> Self {
-        Self {
-            begin: [0, 1].map(|k| self.begin[k].min(2 * next.begin[k])),
-            end: [0, 1].map(|k| self.end[k].max((2 * next.end[k]).min(self.side))),
-            ..self
-        }
-    }
-}
+use crate::parts::maps::tiles::Texels;
 
 /// The texels needed of each level.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,10 +26,7 @@ impl Needed {
         match filter {
             Filter::Mip => Self::of_mips(reads, side),
             Filter::Sat | Filter::SatMean | Filter::SatU32 => Self {
-                levels: vec![Texels {
-                    begin: [0; 2],
-                    ..Texels::read(reads, side)
-                }],
+                levels: vec![Texels::of_table(reads, side)],
             },
         }
     }

@@ -14,6 +14,7 @@ use super::between::Between;
 use super::convex::TangentBox;
 use super::frame::{FAR_AWAY, LightExtent, LightFrame};
 use super::surroundings::Surroundings;
+use crate::world::mesh::widen;
 use crate::world::scene::clip;
 
 /// What a picture is fitted to.
@@ -80,6 +81,20 @@ pub(crate) struct Fitted {
     pub(crate) steepest: f64,
     /// Whether that is beyond what is looked at: some shadows are missing.
     pub(crate) limited: bool,
+}
+
+impl Fitted {
+    /// The nearest and the farthest distance of a vertex of the casters that may cover
+    /// some of the picture, within what is looked at.
+    pub(crate) fn distances(&self, around: &Surroundings<'_>) -> [f64; 2] {
+        let [near, far] = self.range;
+        let casters = around.casters.iter();
+        let seen = casters.filter(|(object, _)| self.objects.binary_search(object).is_ok());
+        let corners = seen.flat_map(|(_, mesh)| mesh.positions().iter().map(|p| widen(*p)));
+        let distances = corners.map(|p| self.frame.local(p).z.clamp(near, far));
+        let (least, most) = distances.fold((far, near), |(a, b), z| (a.min(z), b.max(z)));
+        [least.min(most), most]
+    }
 }
 
 /// What comes of fitting.

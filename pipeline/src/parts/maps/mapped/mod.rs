@@ -11,15 +11,22 @@ use std::collections::BTreeMap;
 
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
-use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};
+use gnomon_raster::{
+    Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureBinding, TextureDescriptor,
+    TextureId,
+};
 use gnomon_shaders::light_view::LightMapping;
 use gnomon_shaders::shadow_maps::{Shadow, ShadowTo};
 use gnomon_shaders::transform::FullScreen;
 
 pub(crate) use notes::{Hints, MapNotes, ViewsOfLight};
-pub(crate) use settings::{MAP_SIZE, MapSettings, Margin, SKIP, ViewSettings};
+pub(crate) use settings::{
+    BIAS, FIT, MAP_SIZE, MapSettings, Margin, NEAR, Planes, SKIP, SLOPE_BIAS, VIEW, ViewSettings,
+};
 
-use super::light_view::{CasterGeometry, Fitted, LightMap, Surroundings, ViewedLight, views_of};
+use super::light_view::{
+    CasterGeometry, Fitted, LightMap, Reads, Surroundings, ViewedLight, views_of,
+};
 use super::lit_tiles::{FurtherLights, LitTiles};
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::{LitTest, View};
@@ -32,7 +39,12 @@ use crate::world::scene::Scene;
 pub(crate) struct LookUp<'a> {
     fitted: &'a Fitted,
     light: &'a ViewedLight,
+    around: &'a Surroundings<'a>,
+    /// Scaled depths.
+    pub(crate) depths: TextureId,
     mapping: LightMapping,
+    /// Adds the light's number where there are several.
+    pub(crate) label: &'a dyn Fn(&str) -> String,
     bias: f64,
     /// Whether texels are held against receivers' planes.
     planes: bool,
@@ -45,6 +57,29 @@ impl LookUp<'_> {
     pub(crate) fn light_half(&self) -> [f32; 2] {
         let axes = self.fitted.frame.axes;
         [0, 1].map(|k| self.light.extent.half_along(axes[k]) as f32)
+    }
+
+    /// What of the picture filters read that are as wide as what lies between
+    /// receivers and the light; `None` without receivers.
+    pub(crate) fn reads(&self) -> Option<Reads> {
+        self.fitted.reads(self.around, self.light.extent)
+    }
+
+    /// The nearest and the farthest distance of a caster in the picture, as shaders have
+    /// distances.
+    pub(crate) fn caster_distances(&self) -> [f64; 2] {
+        let [near, far] = self.fitted.distances(self.around);
+        [near, far].map(|z| z - self.fitted.base)
+    }
+
+    /// Bias, world units.
+    pub(crate) fn bias(&self) -> f64 {
+        self.bias
+    }
+
+    /// Slot of the first of [`Looked::textures`].
+    pub(crate) fn first_slot(&self) -> usize {
+        if self.planes { 3 } else { 2 }
     }
 
     /// What the light's only point says.
@@ -63,6 +98,29 @@ impl LookUp<'_> {
         Shadow {
             to: ShadowTo::Share(self.share),
             ..self.whole(filter)
+        }
+    }
+}
+
+/// How shadows are looked up in a view.
+pub(crate) struct Looked {
+    /// What is made of the view's picture first.
+    pub(crate) prefilter: Vec<RenderPass>,
+    /// Reads positions in slot 0, depths in slot 1, planes, if there are any, in slot 2,
+    /// then `textures`.
+    pub(crate) stage: FragmentStage,
+    pub(crate) textures: Vec<TextureBinding>,
+    /// Numbers that were chosen for the view: of several, the least is reported.
+    pub(crate) figures: Vec<(&'static str, f64)>,
+}
+
+impl From<FragmentStage> for Looked {
+    fn from(stage: FragmentStage) -> Self {
+        Self {
+            prefilter: Vec::new(),
+            stage,
+            textures: Vec::new(),
+            figures: Vec::new(),
         }
     }
 }
@@ -114,13 +172,27 @@ impl Mapped<'_> {
         sources: impl Fn(usize) -> Result<Sources, TechniqueError>,
         shader: impl Fn(&LookUp<'_>) -> FragmentStage,
     ) -> Result<Frame, TechniqueError> {
+        self.prefiltered_frame(|_| Ok(()), sources, |(), l| shader(l).into())
+    }
+
+    /// The same with images made of each picture, in textures that `create` makes.
+    pub(crate) fn prefiltered_frame<T>(
+        &self,
+        create: impl FnOnce(&mut Recording) -> Result<T, TechniqueError>,
+        sources: impl Fn(usize) -> Result<Sources, TechniqueError>,
+        looked: impl Fn(&T, &LookUp<'_>) -> Looked,
+    ) -> Result<Frame, TechniqueError> {
         let around = Surroundings::new(self.scene, self.size);
         let frame = ShadowedFrame::new(self.scene, self.size, &self.frame)?;
         let frame = frame.with_horizon(self.name, self.horizon, false);
         let lights = frame.lights.clone();
         let sources = lights.iter().map(|l| Ok((*l, sources(*l)?)));
         let sources = sources.collect::<Result<BTreeMap<_, _>, TechniqueError>>()?;
-        let by_planes = |s: &Sources| self.margin.planes || s.are_far(&around);
+        let by_planes = |s: &Sources| match self.margin.planes {
+            Planes::Never => false,
+            Planes::Far => s.are_far(&around),
+            Planes::Always => true,
+        };
         let (mut frame, positions) = match sources.values().any(by_planes) {
             true => frame.with_positions_and_planes()?,
             false => frame.with_positions()?,
@@ -129,6 +201,7 @@ impl Mapped<'_> {
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
         let visibility = VisibilityTexture::red(frame.recording.create(&desc)?);
         let mut map = LightMap::create(self.maps.view.fitting.size, &mut frame.recording)?;
+        let images = create(&mut frame.recording)?;
         let view = View::new(&self.scene.camera, self.size);
         let further = FurtherLights::new(self.scene, &around, &view, &lights, self.maps.skip);
         frame.lit(LitTest::Visibility(visibility), |light| {
@@ -148,7 +221,7 @@ impl Mapped<'_> {
                 margin: self.margin,
                 tiles: tiles.as_ref(),
             };
-            Ok(one.passes(sources, &shader, light))
+            Ok(one.passes(sources, &|l: &LookUp<'_>| looked(&images, l), light))
         })
     }
 }
@@ -172,7 +245,7 @@ impl OneLight<'_> {
     fn passes(
         &self,
         sources: &Sources,
-        shader: &impl Fn(&LookUp<'_>) -> FragmentStage,
+        looked: &impl Fn(&LookUp<'_>) -> Looked,
         turn: &mut LightTurn<'_, '_>,
     ) -> Vec<Pass> {
         let labels = turn.labels();
@@ -208,15 +281,22 @@ impl OneLight<'_> {
                     self.maps.skip,
                 );
                 passes.push(Pass::new(PassRole::LightView, picture));
-                let stage = shader(&LookUp {
+                let looked = looked(&LookUp {
                     fitted: &fitted,
                     light,
+                    around: self.around,
+                    depths: self.map.depth,
+                    label: &labels,
                     mapping: fitted.mapping(self.view, fitting.size),
                     bias,
                     planes: self.planes,
                     share: 1.0 / sources.lights.len() as f32,
                 });
-                passes.push(look_up(load, Some((stage, sources.blend))));
+                views.add_figures(&looked.figures);
+                let prefilter = looked.prefilter.into_iter();
+                passes.extend(prefilter.map(|p| Pass::new(PassRole::Prefilter, p)));
+                let draw = self.draw(looked.stage, looked.textures, sources.blend);
+                passes.push(look_up(load, Some(draw)));
                 load = LoadOp::Load;
             }
         }
@@ -227,36 +307,37 @@ impl OneLight<'_> {
         passes
     }
 
-    /// Looks shadows up in the picture; without a shader all is lit.
-    fn look_up(
-        &self,
-        label: String,
-        load: LoadOp<[f32; 4]>,
-        shader: Option<(FragmentStage, ColorTargetState)>,
-    ) -> Pass {
-        let draw = |(stage, blend)| {
-            let pipeline = RenderPipeline {
-                label: "look-up".into(),
-                vertex: FullScreen.stage(),
-                fragment: Some(stage),
-                primitive: PrimitiveState::default(),
-                depth_stencil: DepthStencilState::default(),
-                color_targets: vec![blend],
-            };
-            let planes = self.positions.planes.filter(|_| self.planes);
-            let textures = [self.positions.texture, self.map.depth].into_iter();
-            let bindings = textures.chain(planes).map(binding).collect();
-            match self.tiles {
-                Some(tiles) => tiles.draw(pipeline, bindings),
-                None => full_screen(pipeline, bindings),
-            }
-        };
+    /// Looks shadows up in the picture; without a draw all is lit.
+    fn look_up(&self, label: String, load: LoadOp<[f32; 4]>, draw: Option<Draw>) -> Pass {
         let pass = RenderPass {
             label,
             color: vec![attachment(self.visibility.texture, load)],
             depth_stencil: None,
-            draws: shader.into_iter().map(draw).collect(),
+            draws: draw.into_iter().collect(),
         };
         Pass::new(PassRole::LookUp, pass)
+    }
+
+    fn draw(
+        &self,
+        stage: FragmentStage,
+        more: Vec<TextureBinding>,
+        blend: ColorTargetState,
+    ) -> Draw {
+        let pipeline = RenderPipeline {
+            label: "look-up".into(),
+            vertex: FullScreen.stage(),
+            fragment: Some(stage),
+            primitive: PrimitiveState::default(),
+            depth_stencil: DepthStencilState::default(),
+            color_targets: vec![blend],
+        };
+        let planes = self.positions.planes.filter(|_| self.planes);
+        let textures = [self.positions.texture, self.map.depth].into_iter();
+        let bindings = textures.chain(planes).map(binding).chain(more).collect();
+        match self.tiles {
+            Some(tiles) => tiles.draw(pipeline, bindings),
+            None => full_screen(pipeline, bindings),
+        }
     }
 }

@@ -49,9 +49,21 @@ pub(crate) struct ViewsOfLight {
     bias: f64,
     texel: f64,
     range: Option<[f64; 2]>,
+    /// What a technique chose for its views, the least of each.
+    figures: Vec<(&'static str, f64)>,
 }
 
 impl ViewsOfLight {
+    /// Of one of the views.
+    pub(crate) fn add_figures(&mut self, figures: &[(&'static str, f64)]) {
+        for &(name, value) in figures {
+            match self.figures.iter_mut().find(|(n, _)| *n == name) {
+                Some((_, least)) => *least = least.min(value),
+                None => self.figures.push((name, value)),
+            }
+        }
+    }
+
     pub(crate) fn add(&mut self, fitted: &Fitted, bias: f64, size: u32) {
         self.views += 1;
         self.cut += fitted.cut;
@@ -84,6 +96,9 @@ impl<'a> MapNotes<'a> {
             self.figure("texel", views.texel);
             self.figure("near", near);
             self.figure("far", far);
+        }
+        for (name, value) in views.figures {
+            self.figure(name, value);
         }
     }
 

@@ -137,6 +137,18 @@ impl MapSettings {
     }
 }
 
+/// Whether texels are held against receivers' planes instead of their depths, which
+/// needs no slope bias.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Planes {
+    /// Not at all: what is looked up holds slopes itself.
+    Never,
+    /// Under lights that are far away, which may be low over all that is seen.
+    Far,
+    /// Under all lights.
+    Always,
+}
+
 /// What keeps surfaces from shadowing themselves, where it is not given. Each
 /// technique's is what was best against the exact oracle on the built-in scenes:
 /// less leaves dots on surfaces seen steeply from the light, more parts shadows
@@ -147,10 +159,8 @@ pub(crate) struct Margin {
     pub(crate) bias: f64,
     /// Slope bias in texels.
     pub(crate) slope: f64,
-    /// Whether texels are held against receivers' planes instead, which needs no slope
-    /// bias; so they always are under lights that are far away, which may be low over
-    /// all that is seen.
-    pub(crate) planes: bool,
+    /// Where receivers' planes are looked at.
+    pub(crate) planes: Planes,
 }
 
 impl Margin {
@@ -158,6 +168,6 @@ impl Margin {
     pub(crate) const ONE_TEXEL: Self = Self {
         bias: 0.25,
         slope: 0.5,
-        planes: false,
+        planes: Planes::Far,
     };
 }

@@ -4,13 +4,17 @@
 //! suites and tables pick it up from there. A crate of its own adds one to a
 //! [`Registry`] instead.
 
+mod backprojection;
 mod cone_culling;
 mod convolution_soft_shadows;
+mod heckbert_herf;
 mod mixed_lights;
+mod moment_maps;
 mod pcf;
 mod pcss;
 mod penumbra_wedges;
 pub(crate) mod penumbra_wedges_restructured;
+mod ray_traced;
 mod registry;
 mod sampled_shadow_volumes;
 mod shadow_map;
@@ -21,13 +25,17 @@ mod soft_shadow_volumes;
 mod soft_shadow_volumes_optimised;
 mod unshadowed;
 
+use backprojection::BackprojectedMaps;
 use cone_culling::ConeCulling;
 use convolution_soft_shadows::ConvolutionSoftShadows;
+use heckbert_herf::HeckbertHerf;
 use mixed_lights::MixedLights;
+use moment_maps::MomentMaps;
 use pcf::Pcf;
 use pcss::Pcss;
 use penumbra_wedges::PenumbraWedges;
 use penumbra_wedges_restructured::PenumbraWedgesRestructured;
+use ray_traced::RayTraced;
 use sampled_shadow_volumes::SampledShadowVolumes;
 use shadow_map::ShadowMap;
 use shadow_maps_n::ShadowMapsN;
@@ -56,6 +64,15 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &Pcf,
         &Pcss,
         &ShadowMapsN,
+        &MomentMaps::Variance,
+        &MomentMaps::Exponential,
+        &MomentMaps::Four,
+        &MomentMaps::VarianceSoft,
+        &MomentMaps::Mask,
+        &HeckbertHerf,
+        &BackprojectedMaps::Areas,
+        &BackprojectedMaps::Bits,
+        &RayTraced,
         &ConvolutionSoftShadows,
         &ConeCulling,
         &Smoothies,

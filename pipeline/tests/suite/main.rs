@@ -1,6 +1,7 @@
 //! Everything that must hold of scenes, geometry, truth and techniques, in one
 //! binary: it links once.
 
+mod backprojection;
 mod comparison;
 mod cone_culling;
 mod convolution_hazards;
@@ -15,10 +16,14 @@ mod heat;
 mod horizon;
 mod lit_tiles;
 mod map_support;
+mod moment_bounds;
+mod moment_maps;
 mod near_plane;
 mod open_casters;
 mod outlines;
 mod penumbra_wedges;
+mod planar;
+mod ray_traced;
 mod settings_effect;
 mod shader_identity;
 mod shadow_maps;

@@ -236,7 +236,8 @@ impl Matrix<'_> {
     fn base(&self) -> Vec<String> {
         let has = |key: &str| self.technique.params().iter().any(|p| p.name == key);
         let mut base: Vec<(&str, &str)> = CHEAP.into_iter().filter(|(k, _)| has(k)).collect();
-        if self.technique.name().starts_with("sampled") {
+        let name = self.technique.name();
+        if name.starts_with("sampled") || ["ray-traced", "heckbert-herf"].contains(&name) {
             base.push(("samples", "4"));
         }
         base.iter().map(|(k, v)| format!("{k}={v}")).collect()
@@ -360,12 +361,28 @@ const VOLUMES: [&str; 3] = ["unshadowed", "shadow-volumes", "sampled-shadow-volu
 const WEDGES: [&str; 2] = ["penumbra-wedges", "penumbra-wedges-restructured"];
 const SOFT: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
 const MAPS: [&str; 4] = ["shadow-map", "pcf", "pcss", "shadow-maps-n"];
+const MOMENTS: [&str; 4] = ["vsm", "evsm", "msm", "vssm"];
+const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
+const RAYS: [&str; 1] = ["ray-traced"];
+const BACKPROJECTED: [&str; 2] = ["backprojection", "bitmask"];
 const CONES: [&str; 2] = ["cone-culling", "smoothies"];
 const OTHERS: [&str; 2] = ["convolution-soft-shadows", "mixed-lights"];
 
 #[test]
 fn no_technique_is_left_out() {
-    let checked = [&VOLUMES[..], &WEDGES, &SOFT, &MAPS, &CONES, &OTHERS].concat();
+    let checked = [
+        &VOLUMES[..],
+        &WEDGES,
+        &SOFT,
+        &MAPS,
+        &MOMENTS,
+        &BACKPROJECTED,
+        &RAYS,
+        &PLANAR,
+        &CONES,
+        &OTHERS,
+    ]
+    .concat();
     for technique in techniques::all() {
         assert!(checked.contains(&technique.name()), "{}", technique.name());
     }
@@ -389,6 +406,26 @@ fn settings_of_soft_volumes_act_or_are_warned_of() {
 #[test]
 fn settings_of_light_views_act_or_are_warned_of() {
     check(&MAPS);
+}
+
+#[test]
+fn settings_of_moment_maps_act_or_are_warned_of() {
+    check(&MOMENTS);
+}
+
+#[test]
+fn settings_of_backprojection_act_or_are_warned_of() {
+    check(&BACKPROJECTED);
+}
+
+#[test]
+fn settings_of_rays_act_or_are_warned_of() {
+    check(&RAYS);
+}
+
+#[test]
+fn settings_of_planar_shadows_act_or_are_warned_of() {
+    check(&PLANAR);
 }
 
 #[test]

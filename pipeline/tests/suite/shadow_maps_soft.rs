@@ -1,34 +1,14 @@
 //! PCF, PCSS and N shadow maps against closed forms and the exact oracle
 //! (docs/papers.md, baselines).
 
-use crate::map_support::{SIZE, by, centre_of, figure, plates, scene, sized, truth};
+use crate::map_support::{SIZE, by, centre_of, figure, plate_error, scene, sized, truth};
 use glam::DVec3;
-use gnomon_pipeline::truth::metrics::visibility::{ErrorSummary, VisibilityError};
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
 use gnomon_pipeline::world::light::{ConvexPolygon, LightShape};
 use gnomon_pipeline::world::scene::Scene;
 
 const DISTANCES: [f64; 4] = [3.0, 4.9, 5.1, 8.0];
-
-/// Errors on the floor against the closed form, and half the width of the kernel
-/// that it asks for, in texels.
-fn plate_error(name: &str, d: f64, set: &[&str]) -> (ErrorSummary, f64) {
-    let (scene, plates) = plates(d);
-    let picture = by(name, &scene, set);
-    let rays = scene.camera.eye_rays(SIZE[0], SIZE[1]);
-    let mut errors = Vec::new();
-    for (k, seen) in picture.visibility.iter().enumerate() {
-        let place = [k as u32 % SIZE[0], k as u32 / SIZE[0]].map(|c| f64::from(c) + 0.5);
-        let ray = rays.direction(place[0], place[1]);
-        let at = rays.origin - ray * (rays.origin.y / ray.y);
-        errors.push(f64::from(*seen) - plates.visibility(at.x, at.z));
-    }
-    let texel = figure(&picture, "texel") / figure(&picture, "far");
-    let kernel = plates.light_half * (1.0 / plates.plate_distance - 1.0 / d) / texel;
-    let summary = ErrorSummary::of(&errors).unwrap();
-    println!("{name} {set:?} d={d}: {summary:?}, kernel {kernel:.1} texels");
-    (summary, kernel)
-}
 
 fn rmse(technique: &str, scene: &Scene, truth: &VisibilityImage, set: &[&str]) -> f64 {
     let picture = by(technique, scene, set);

@@ -5,6 +5,7 @@ use glam::DVec3;
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::visibility::{ErrorSummary, VisibilityError};
 use gnomon_pipeline::truth::oracle::area::VisibilityImage;
 use gnomon_pipeline::world::light::{HardLight, Light};
 use gnomon_pipeline::world::mesh::Shading;
@@ -44,6 +45,53 @@ pub(crate) fn truth(scene: &Scene) -> VisibilityImage {
 pub(crate) fn figure(picture: &Rendered, name: &str) -> f64 {
     let found = picture.figures.iter().find(|f| f.name == name);
     found.unwrap_or_else(|| panic!("no figure {name}")).value
+}
+
+/// A picture of [`plates`], and its errors on the floor against the closed form.
+fn plate_errors(name: &str, d: f64, set: &[&str]) -> (Rendered, ErrorSummary) {
+    let (scene, plates) = plates(d);
+    let picture = by(name, &scene, set);
+    let rays = scene.camera.eye_rays(SIZE[0], SIZE[1]);
+    let mut errors = Vec::new();
+    for (k, seen) in picture.visibility.iter().enumerate() {
+        let place = [k as u32 % SIZE[0], k as u32 / SIZE[0]].map(|c| f64::from(c) + 0.5);
+        let ray = rays.direction(place[0], place[1]);
+        let at = rays.origin - ray * (rays.origin.y / ray.y);
+        errors.push(f64::from(*seen) - plates.visibility(at.x, at.z));
+    }
+    let summary = ErrorSummary::of(&errors).unwrap();
+    println!("{name} {set:?} d={d}: {summary:?}");
+    (picture, summary)
+}
+
+/// Errors on the floor of [`plates`] against the closed form.
+pub(crate) fn sampled_plate_error(name: &str, d: f64, set: &[&str]) -> ErrorSummary {
+    plate_errors(name, d, set).1
+}
+
+/// The same of a technique on light views, and half the width of the kernel that the
+/// closed form asks for, in texels.
+pub(crate) fn plate_error(name: &str, d: f64, set: &[&str]) -> (ErrorSummary, f64) {
+    let (picture, summary) = plate_errors(name, d, set);
+    let (_, plates) = plates(d);
+    let texel = figure(&picture, "texel") / figure(&picture, "far");
+    let kernel = plates.light_half * (1.0 / plates.plate_distance - 1.0 / d) / texel;
+    println!("kernel {kernel:.1} texels");
+    (summary, kernel)
+}
+
+/// A technique's error on a scene, everywhere.
+pub(crate) fn error(
+    technique: &str,
+    scene: &Scene,
+    truth: &VisibilityImage,
+    set: &[&str],
+) -> ErrorSummary {
+    let picture = by(technique, scene, set);
+    let error = VisibilityError::measure(truth, SIZE, &picture.visibility).unwrap();
+    println!("{} {technique} {set:?}: {:?}", scene.name, error.all);
+    assert_eq!(error.mask.out_of_range, 0, "{technique} {set:?}");
+    error.all.unwrap()
 }
 
 /// A light below which all of a scene is: a horizontal square's centre.

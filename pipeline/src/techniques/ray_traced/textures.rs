@@ -1,0 +1,117 @@
+//! What rays read, in textures.
+
+use gnomon_raster::{
+    Format, MAX_TEXTURE_SIZE, Recording, Subresource, TextureDescriptor, TextureId,
+};
+use gnomon_shaders::shadow_rays::Table;
+
+use super::hierarchy::{self, Node, Triangle};
+use crate::parts::view::View;
+use crate::technique::TechniqueError;
+use crate::world::light::HardLight;
+use crate::world::mesh::narrow;
+use crate::world::scene::Scene;
+
+/// The casters' triangles with their hierarchy.
+pub(super) struct CasterTextures {
+    pub(super) nodes: (TextureId, Table),
+    pub(super) triangles: (TextureId, Table),
+    /// Nodes.
+    pub(super) count: u32,
+    /// The largest coordinate of a caster.
+    pub(super) largest: f32,
+}
+
+/// Most nodes whose numbers are exact in a float.
+const MOST_NODES: usize = 1 << 24;
+
+impl CasterTextures {
+    /// Of all casters.
+    ///
+    /// # Errors
+    /// There are too many triangles for the textures.
+    pub(super) fn create(
+        technique: &'static str,
+        scene: &Scene,
+        view: &View,
+        recording: &mut Recording,
+    ) -> Result<Self, TechniqueError> {
+        let triangles = triangles(scene, view);
+        if 2 * triangles.len() > MOST_NODES {
+            return Err(TechniqueError::TooManyTriangles {
+                technique,
+                given: triangles.len(),
+                most: MOST_NODES / 2,
+            });
+        }
+        let nodes = hierarchy::build(&triangles);
+        let boxes = nodes.iter().flat_map(texels);
+        let corners = triangles.iter().flatten().map(|p| [p[0], p[1], p[2], 0.0]);
+        Ok(Self {
+            nodes: table("hierarchy", boxes.collect(), recording)?,
+            triangles: table("triangles", corners.collect(), recording)?,
+            count: nodes.len() as u32,
+            largest: hierarchy::largest(&triangles),
+        })
+    }
+}
+
+fn triangles(scene: &Scene, view: &View) -> Vec<Triangle> {
+    let casters = scene.objects.iter().filter(|o| o.casts);
+    let of = |mesh: &crate::world::mesh::Mesh| {
+        let all = (0..mesh.triangles().len()).map(|t| mesh.corners(t));
+        all.map(|corners| corners.map(|p| narrow(view.relative(p))))
+            .collect::<Vec<_>>()
+    };
+    casters.flat_map(|o| of(&o.mesh)).collect()
+}
+
+fn texels(node: &Node) -> [[f32; 4]; 2] {
+    let ([a, b, c], [x, y, z]) = (node.low, node.high);
+    let triangle = node.triangle.map_or(-1.0, |t| t as f32);
+    [[a, b, c, triangle], [x, y, z, node.next as f32]]
+}
+
+/// A texture of these texels in rows, at least one.
+fn table(
+    label: &str,
+    mut texels: Vec<[f32; 4]>,
+    recording: &mut Recording,
+) -> Result<(TextureId, Table), TechniqueError> {
+    let side = (texels.len().max(1) as f64).sqrt() as u64 + 1;
+    let width = side.next_power_of_two().min(u64::from(MAX_TEXTURE_SIZE)) as usize;
+    let height = texels.len().div_ceil(width).max(1);
+    texels.resize(width * height, [0.0; 4]);
+    let desc = TextureDescriptor::d2(label, Format::Rgba32Float, width as u32, height as u32);
+    let texture = recording.create(&desc)?;
+    recording.write(texture, Subresource::default(), &texels)?;
+    let log_width = width.ilog2();
+    Ok((texture, Table { log_width }))
+}
+
+/// Points of a light, a row for each pixel of a block.
+pub(super) fn points(
+    rows: &[Vec<HardLight>],
+    view: &View,
+    recording: &mut Recording,
+) -> Result<TextureId, TechniqueError> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let desc = TextureDescriptor::d2(
+        "points",
+        Format::Rgba32Float,
+        columns as u32,
+        rows.len() as u32,
+    );
+    let texture = recording.create(&desc)?;
+    let texels: Vec<[f32; 4]> = rows.iter().flatten().map(|p| texel(p, view)).collect();
+    recording.write(texture, Subresource::default(), &texels)?;
+    Ok(texture)
+}
+
+fn texel(point: &HardLight, view: &View) -> [f32; 4] {
+    let ([x, y, z], w) = match point {
+        HardLight::Point(p) => (narrow(view.relative(*p)), 1.0),
+        HardLight::Directional(towards) => (narrow(towards.normalize()), 0.0),
+    };
+    [x, y, z, w]
+}

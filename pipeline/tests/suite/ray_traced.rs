@@ -1,0 +1,236 @@
+//! Shadow rays in a shader against the hard truth, the closed form and the exact oracle
+//! (docs/papers.md, baselines).
+
+use crate::map_support::{
+    SIZE, by, error, figure, plates, sampled_plate_error, scene, sized, truth,
+};
+use glam::DVec3;
+use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
+use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth};
+use gnomon_pipeline::world::light::LightShape;
+use gnomon_pipeline::world::mesh::Shading;
+use gnomon_pipeline::world::scene::{Camera, Material, Object, Scene, builtin};
+use gnomon_pipeline::world::shape;
+use gnomon_shaders::shadow_rays::SHADOW_RAYS;
+
+fn lit_by(name: &str, shape: LightShape) -> Scene {
+    let mut scene = scene(name);
+    scene.lights[0].shape = shape;
+    scene
+}
+
+/// Pixels that have no excuse to differ from the hard truth, and those that do.
+fn against_the_hard_truth(scene: &Scene, set: &[&str]) -> [usize; 3] {
+    let picture = by("ray-traced", scene, set);
+    let truth = HardTruth::of_scene(scene, 0, SIZE, EdgeTolerance::HALF_PIXEL_AND_DEPTH);
+    let (mut judged, mut dark, mut wrong) = (0, 0, 0);
+    for (pixel, seen) in truth.pixels.iter().zip(&picture.visibility) {
+        if !pixel.interior || pixel.centre.hit.is_none() || seen.is_nan() {
+            continue;
+        }
+        judged += 1;
+        dark += usize::from(!pixel.is_lit());
+        wrong += usize::from((*seen == 1.0) != pixel.is_lit());
+    }
+    println!(
+        "{} {set:?}: {judged} judged, {dark} dark, {wrong} wrong",
+        scene.name
+    );
+    [judged, dark, wrong]
+}
+
+const POINTS: [LightShape; 3] = [
+    LightShape::Point {
+        position: DVec3::new(1.4, 4.0, 1.1),
+    },
+    LightShape::Point {
+        position: DVec3::new(-2.0, 3.0, 2.5),
+    },
+    LightShape::Directional {
+        towards: DVec3::new(0.5, 1.0, 0.4),
+    },
+];
+
+/// T: one ray to a point is the hard truth, at every pixel that has no excuse.
+#[test]
+fn one_ray_is_the_hard_shadow() {
+    let mut all_dark = 0;
+    for name in ["cylinder", "creature"] {
+        for shape in POINTS {
+            let [judged, dark, wrong] = against_the_hard_truth(&lit_by(name, shape), &[]);
+            assert!(judged > 3000, "{name}: {judged}");
+            assert_eq!(wrong, 0, "{name}");
+            all_dark += dark;
+        }
+    }
+    assert!(all_dark > 800, "{all_dark}");
+}
+
+/// Negative control: rays that start on their surfaces meet them.
+#[test]
+fn rays_from_the_surface_itself_meet_it() {
+    let scene = lit_by("spheres", POINTS[0].clone());
+    assert!(against_the_hard_truth(&scene, &["bias=0"])[2] > 0);
+    // Far off their surfaces they pass casters by.
+    assert!(against_the_hard_truth(&scene, &["bias=0.3"])[2] > 20);
+}
+
+/// T: the closed form within the steps of N points: each edge crosses √N of the cells, in
+/// each of which a point is anywhere.
+#[test]
+fn many_rays_are_the_closed_form_within_their_steps() {
+    for d in [3.0, 8.0] {
+        for (set, side) in [("samples=16", 4.0f64), ("samples=256", 16.0)] {
+            let error = sampled_plate_error("ray-traced", d, &[set]);
+            // Two edges along each axis, no more than a cell wide.
+            assert!(error.max <= 4.0 / side, "{d} {set}: {error:?}");
+            // Standard deviation of one edge: √(N^1/2 / 6) / N.
+            let expected = (side / 6.0).sqrt() / (side * side);
+            assert!(error.rmse < 1.5 * expected, "{d} {set}: {error:?}");
+            assert!(error.mean.abs() < 0.1 * expected, "{d} {set}: {error:?}");
+        }
+    }
+}
+
+/// T: variance. One point sees the light or not: V(1 - V). N jittered ones, each in its
+/// cell, have less, falling as N^-3/2, for only cells that an edge crosses vary.
+#[test]
+fn variance_falls_as_predicted() {
+    const SEEDS: u32 = 24;
+    let size = [40, 28];
+    let scene = scene("parallel-plates");
+    let truth = VisibilityImage::of_scene(&scene, 0, size, &|| ()).unwrap();
+    let variance = |samples: u32| {
+        let picture = |seed: u32| {
+            let set = [format!("samples={samples}"), format!("seed={seed}")];
+            let set = set.each_ref().map(String::as_str);
+            sized("ray-traced", &scene, &set, size).unwrap().visibility
+        };
+        let pictures: Vec<Vec<f32>> = (0..SEEDS).map(picture).collect();
+        let (mut found, mut binomial) = (0.0, 0.0);
+        for (k, v) in truth.values.iter().enumerate() {
+            if LightRegion::of(*v) != Some(LightRegion::Penumbra) {
+                continue;
+            }
+            let values = pictures.iter().map(|p| f64::from(p[k]));
+            let mean = values.clone().sum::<f64>() / f64::from(SEEDS);
+            let squares = values.map(|x| (x - mean) * (x - mean)).sum::<f64>();
+            found += squares / f64::from(SEEDS - 1);
+            binomial += v * (1.0 - v);
+        }
+        println!("{samples} rays: variance {:.4} of V(1-V)", found / binomial);
+        found / binomial
+    };
+    let [one, four, sixteen] = [1, 4, 16].map(variance);
+    assert!((one - 1.0).abs() < 0.15, "{one}");
+    assert!(four < 0.3 && sixteen < 0.08, "{four} {sixteen}");
+    let fall = four / sixteen;
+    assert!((5.5..11.5).contains(&fall), "8 is predicted: {fall}");
+}
+
+/// Scenes with everything in them, and lights of every shape: the oracle, but for noise.
+#[test]
+fn scenes_are_the_truth_but_for_noise() {
+    let centre = DVec3::new(1.4, 4.0, 1.1);
+    let sphere = LightShape::Sphere {
+        centre,
+        radius: 0.5,
+    };
+    let disc = LightShape::Disc {
+        centre,
+        normal: DVec3::new(-0.2, -1.0, -0.1),
+        radius: 0.5,
+    };
+    for scene in [
+        scene("cylinder"),
+        scene("creature"),
+        scene("spheres"),
+        scene("single-silhouette"),
+        lit_by("cylinder", sphere),
+        lit_by("cylinder", disc),
+    ] {
+        let truth = truth(&scene);
+        let of = |set: &str| error("ray-traced", &scene, &truth, &[set]);
+        let [few, many] = ["samples=16", "samples=144"].map(of);
+        assert!(many.rmse < 0.01 && many.mean.abs() < 1e-3, "{}", scene.name);
+        // N^-3/4: 5.2. Single pixels at the end of a surface may be wrong with any N.
+        let fall = few.p99 / many.p99;
+        assert!((3.5..7.5).contains(&fall), "{}: {fall}", scene.name);
+    }
+}
+
+/// Nothing slips between triangles: inside a closed ball no light is seen, wherever rays
+/// go through edges and corners.
+#[test]
+fn no_ray_slips_between_triangles() {
+    let matt = Material::matt([0.7; 3]);
+    let solid = |shape: shape::Shape| shape.into_mesh(Shading::Flat).unwrap();
+    let ball = solid(shape::icosphere(3, 2.0, DVec3::ZERO));
+    let floor = solid(shape::plane(1.0, 0.0));
+    let mut camera = Camera::look_at([0.0, 1.0, 0.0], [0.0, 0.0, 0.0]);
+    camera.up = DVec3::Z;
+    let mut light = builtin::build("cylinder").unwrap().lights[0].clone();
+    light.shape = LightShape::Sphere {
+        centre: DVec3::new(0.0, 9.0, 0.0),
+        radius: 3.0,
+    };
+    let objects = vec![
+        Object::new("floor", floor, matt).receiver_only(),
+        Object::new("ball", ball, matt),
+    ];
+    let scene = Scene::new(camera, vec![light], objects);
+    let picture = by("ray-traced", &scene, &["samples=64"]);
+    let rays = figure(&picture, SHADOW_RAYS);
+    assert!(rays > 500_000.0, "{rays}");
+    assert!(picture.visibility.iter().all(|v| *v == 0.0));
+}
+
+/// Rays and points are counted exactly, and boxes leave most of the scene out.
+#[test]
+fn rays_and_fetches_are_counted() {
+    let scene = scene("creature");
+    let picture = by("ray-traced", &scene, &["samples=16"]);
+    let receivers = picture.visibility.iter().filter(|v| !v.is_nan()).count() as u64;
+    assert_eq!(figure(&picture, SHADOW_RAYS), (16 * receivers) as f64);
+    let passes = &picture.report.passes;
+    let pass = passes.iter().find(|p| p.label == "shadow rays").unwrap();
+    let fetches = pass.totals().traffic.tex_fetches;
+    assert_eq!(fetches[0], u64::from(SIZE[0] * SIZE[1]));
+    let casters = scene.objects.iter().filter(|o| o.casts);
+    let triangles = casters
+        .map(|o| o.mesh.triangles().len() as u64)
+        .sum::<u64>();
+    let per_ray = fetches[1] as f64 / (16 * receivers) as f64;
+    println!("{triangles} triangles, {per_ray} texels of nodes a ray");
+    assert!(per_ray >= 2.0 && per_ray < 0.1 * 4.0 * triangles as f64);
+    let all_nothing = by("ray-traced", &without_casters(&scene), &["samples=4"]);
+    assert!(
+        all_nothing
+            .visibility
+            .iter()
+            .all(|v| v.is_nan() || *v == 1.0)
+    );
+}
+
+fn without_casters(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.objects.iter_mut().for_each(|o| o.casts = false);
+    scene
+}
+
+#[test]
+fn bad_parameters_and_lights_are_refused() {
+    let (mut scene, _) = plates(3.0);
+    for (set, told) in [
+        ("samples=15", "square numbers"),
+        ("block=3", "a power of two, 1 to 32"),
+        ("bias=-1", "auto, or a number from 0"),
+    ] {
+        let message = sized("ray-traced", &scene, &[set], SIZE).unwrap_err();
+        assert!(message.contains(told), "{set}: {message}");
+    }
+    let towards = DVec3::ZERO;
+    scene.lights[0].shape = LightShape::Directional { towards };
+    let message = sized("ray-traced", &scene, &[], SIZE).unwrap_err();
+    assert!(message.contains("direction is"), "{message}");
+}

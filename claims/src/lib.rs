@@ -43,6 +43,7 @@ mod scenes;
 mod shader_work;
 mod smoothies;
 mod tally;
+mod tamura;
 mod thesis;
 
 use thiserror::Error;
@@ -131,7 +132,7 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 12] = [
+    let papers: [&'static [Claim]; 13] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
@@ -144,6 +145,7 @@ pub fn claims() -> impl Iterator<Item = &'static Claim> {
         annen::CLAIMS,
         cones::CLAIMS,
         smoothies::CLAIMS,
+        tamura::CLAIMS,
     ];
     papers.into_iter().flatten()
 }

@@ -5,6 +5,7 @@
 //! * [`backprojection`]: texels of light views projected on the light
 //! * [`cones`]: shadows of spheres from the patches of a light view
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
+//! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`convolution`]: shadow maps that are filtered before they are compared
 //! * [`moments`]: shadow maps filtered as means of functions of depth
@@ -30,6 +31,7 @@ pub mod cones;
 pub mod convolution;
 pub mod coverage;
 pub mod coverage_table;
+pub mod deferred;
 pub mod light_view;
 pub mod moments;
 pub mod penumbra;
@@ -97,6 +99,10 @@ stages! {
         smoothies::SmoothieVertices: "smoothies.vertices" 1,
         soft_volumes::HardQuads: "soft-volumes.hard-quads" 1,
         soft_volumes::EyeCount: "soft-volumes.eye-count" 1,
+        deferred::radiance::VertexRadiance: "deferred.vertex-radiance" 1,
+        deferred::radiance::Reflections: "deferred.reflections" 1,
+        deferred::radiance::Corners: "deferred.corners" 1,
+        deferred::obscured::Transported: "deferred.transported" 1,
     }
     fragment {
         surface::Constant: "surface.constant" 1,
@@ -155,6 +161,13 @@ stages! {
         shadow_maps::Shadow<moments::filter::FixedKernel>: "moments.fixed-kernel" 1,
         shadow_maps::Shadow<moments::filter::LightKernel>: "moments.light-kernel" 1,
         shadow_maps::Shadow<moments::variance_soft::VarianceSoft>: "moments.variance-soft" 1,
+        deferred::radiance::Carried: "deferred.carried" 1,
+        deferred::radiance::GlossyRadiance: "deferred.glossy-radiance" 1,
+        deferred::radiance::SurfaceRadiance: "deferred.surface-radiance" 1,
+        deferred::maps::BoxAlong: "deferred.box-along" 1,
+        deferred::obscured::ObscuredRadiance: "deferred.obscured-radiance" 1,
+        deferred::obscured::DistantVisibility: "deferred.distant-visibility" 1,
+        deferred::lit::LessObscured: "deferred.less-obscured" 1,
     }
 }
 
@@ -165,7 +178,7 @@ mod tests {
     #[test]
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
-        assert_eq!(table.vertex_shaders().count(), 8);
-        assert_eq!(table.fragment_shaders().count(), 51);
+        assert_eq!(table.vertex_shaders().count(), 12);
+        assert_eq!(table.fragment_shaders().count(), 58);
     }
 }

@@ -104,6 +104,7 @@ fn condition(condition: &Condition) -> Json {
         Condition::All(list) => json!({ "all": all(list) }),
         Condition::Any(list) => json!({ "any": all(list) }),
         Condition::Lights(fact) => json!({ "a_light_is": fact.name() }),
+        Condition::Environment => json!({ "scene_has": "environment" }),
     }
 }
 

@@ -78,5 +78,5 @@ fn what_is_not_there_is_refused_with_what_is() {
     refused("color.depth", &["Rgba16Float"]);
     refused("color:1", &[":0:0"]);
     refused("color=c.tiff", &[".exr"]);
-    assert_eq!(folder.names(), [String::new(); 0]);
+    assert!(folder.names().is_empty());
 }

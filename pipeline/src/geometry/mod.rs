@@ -6,6 +6,7 @@ pub mod area_light;
 pub mod caster;
 pub mod convolution;
 pub mod coverage;
+pub mod harmonics;
 pub(crate) mod layers;
 pub(crate) mod light_contact;
 pub(crate) mod outlines;

@@ -74,6 +74,16 @@ impl<'a> SceneDraws<'a> {
         }
     }
 
+    /// What is drawn of the scene, object after object.
+    pub(crate) fn surfaces(&self) -> &[SurfaceDraw<'a>] {
+        &self.surfaces
+    }
+
+    /// Whether materials have highlights.
+    pub(crate) fn has_highlights(&self) -> bool {
+        self.highlights
+    }
+
     /// Clears all attachments, then draws ambient light and depth.
     pub fn ambient_pass(&self, targets: &Targets) -> RenderPass {
         let [r, g, b] = self.scene.background;
@@ -258,7 +268,8 @@ fn lit_state(test: LitTest, receives: bool) -> DepthStencilState {
     }
 }
 
-fn equal_depth() -> DepthStencilState {
+/// Where the surface is the one that is seen.
+pub(crate) fn equal_depth() -> DepthStencilState {
     DepthStencilState {
         depth: DepthState {
             compare: CompareFunction::Equal,

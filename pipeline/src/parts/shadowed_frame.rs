@@ -230,7 +230,10 @@ impl<'a> ShadowedFrame<'a> {
     }
 
     /// The frame of the passes so far.
-    fn finish(mut self, visibility: VisibilityOutput) -> Result<Frame, TechniqueError> {
+    ///
+    /// # Errors
+    /// The GPU refuses a name.
+    pub(crate) fn finish(mut self, visibility: VisibilityOutput) -> Result<Frame, TechniqueError> {
         let (passes, roles) = apart(self.passes);
         self.recording.list = CommandList { passes };
         let outputs = Outputs {

@@ -57,6 +57,19 @@ impl<'a> SurfaceDraw<'a> {
         parts.into_iter().zip(indices).map(draw).collect()
     }
 
+    /// Six floats each: position relative to the view's origin, and normal. All
+    /// draws of an object share them; those of a caster are its mesh's
+    /// [`shading_vertices`](crate::world::mesh::Mesh::shading_vertices).
+    pub(crate) fn vertices(&self) -> &Arc<VertexBuffer> {
+        &self.vertices
+    }
+
+    /// Triangles over them.
+    pub(crate) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let corners = self.indices.indices().chunks_exact(3);
+        corners.map(|c| [c[0], c[1], c[2]])
+    }
+
     /// Ambient light times albedo, opaque.
     pub(crate) fn ambient(&self, light: [f32; 3]) -> [f32; 4] {
         let albedo = self.material.albedo;

@@ -21,6 +21,8 @@ pub enum Condition {
     Any(&'static [Condition]),
     /// One of the lights that shine is such a light.
     Lights(LightFact),
+    /// An environment lights the scene, by all of its lights.
+    Environment,
 }
 
 /// What a light may be.
@@ -62,6 +64,10 @@ impl Condition {
             Self::All(all) => all.iter().all(|c| c.holds(params, scene)),
             Self::Any(any) => any.iter().any(|c| c.holds(params, scene)),
             Self::Lights(fact) => shining(params, scene).any(|shape| fact.holds(shape)),
+            Self::Environment => {
+                let all = params.text("light").is_none_or(|light| light == "all");
+                scene.environment.is_some() && all
+            }
         }
     }
 }
@@ -86,6 +92,7 @@ impl Display for Condition {
             Self::Any(any) => f.write_str(&joined(any, " or ")),
             Self::Lights(LightFact::Sphere) => f.write_str("a light is a sphere"),
             Self::Lights(LightFact::Extended) => f.write_str("a light has an extent"),
+            Self::Environment => f.write_str("an environment lights the scene, light=all"),
         }
     }
 }

@@ -44,6 +44,8 @@ pub enum PassRole {
     LookUp,
     /// Rays from receivers to lights.
     ShadowRays,
+    /// Light of vertices, and of surfaces from it.
+    Radiance,
     /// One picture added to another.
     AddPicture,
     /// Anything else.

@@ -7,6 +7,7 @@
 mod backprojection;
 mod cone_culling;
 mod convolution_soft_shadows;
+mod deferred_shadowing;
 mod heckbert_herf;
 mod mixed_lights;
 mod moment_maps;
@@ -28,6 +29,7 @@ mod unshadowed;
 use backprojection::BackprojectedMaps;
 use cone_culling::ConeCulling;
 use convolution_soft_shadows::ConvolutionSoftShadows;
+use deferred_shadowing::DeferredShadowing;
 use heckbert_herf::HeckbertHerf;
 use mixed_lights::MixedLights;
 use moment_maps::MomentMaps;
@@ -74,6 +76,7 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &BackprojectedMaps::Bits,
         &RayTraced,
         &ConvolutionSoftShadows,
+        &DeferredShadowing,
         &ConeCulling,
         &Smoothies,
         &MixedLights,

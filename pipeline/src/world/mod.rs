@@ -7,6 +7,7 @@ pub mod error;
 pub mod files;
 pub mod light;
 pub mod material;
+pub(crate) mod memo;
 pub mod mesh;
 pub mod obj;
 pub mod plates;

@@ -16,6 +16,7 @@ use gnomon_pipeline::technique::{
 use gnomon_pipeline::techniques::{self, find};
 use gnomon_pipeline::world::light::{Light, LightShape};
 use gnomon_pipeline::world::mesh::{Mesh, Shading};
+use gnomon_pipeline::world::scene::environment::{EnvironmentRequest, FittedMaps};
 use gnomon_pipeline::world::scene::{Camera, Material, Object, Scene};
 use gnomon_pipeline::world::shape::{self, Shape};
 use gnomon_raster::GpuConfig;
@@ -35,11 +36,23 @@ const CHEAP: [(&str, &str); 7] = [
 
 /// Settings that change nothing by design of the technique, with the reason. Parameter
 /// X, and `Y=y` or nothing.
-const EXEMPT: [(&str, &str, &str); 1] = [(
-    "smoothies fit ",
-    "width=3.2",
-    "smoothies as wide as all that is seen: views hold everything",
-)];
+const EXEMPT: [(&str, &str, &str); 3] = [
+    (
+        "smoothies fit ",
+        "width=3.2",
+        "smoothies as wide as all that is seen: views hold everything",
+    ),
+    (
+        "deferred-shadowing seed",
+        "lights=2",
+        "from wherever two sites begin they relax to the same regions",
+    ),
+    (
+        "deferred-shadowing plane",
+        "groups=all",
+        "the ball behind the eye is in the group, whose middle strikes nothing",
+    ),
+];
 
 /// Everything that a setting could change.
 #[derive(PartialEq)]
@@ -170,6 +183,17 @@ fn scenes() -> Vec<Scene> {
     ]
 }
 
+/// Three objects under an environment.
+fn under_sky() -> Scene {
+    let mut scene = scene(Vec::new(), two_boxes());
+    let mut request = EnvironmentRequest::new("sky");
+    request.settings.side = 8;
+    request.fit.lights = 6;
+    let known = &mut FittedMaps::default();
+    request.light(&mut scene, known).unwrap();
+    scene
+}
+
 /// Two lights over 256 plates: as many volumes as an 8-bit stencil takes for none.
 fn stack() -> Scene {
     let plate = |k: u32| {
@@ -239,6 +263,9 @@ impl Matrix<'_> {
         let name = self.technique.name();
         if name.starts_with("sampled") || ["ray-traced", "heckbert-herf"].contains(&name) {
             base.push(("samples", "4"));
+        }
+        if self.technique.name() == DEFERRED {
+            base.extend([("map-size", "16"), ("directions", "64"), ("lights", "4")]);
         }
         base.iter().map(|(k, v)| format!("{k}={v}")).collect()
     }
@@ -343,10 +370,15 @@ fn wrong_settings(technique: &'static dyn Technique, scenes: &[Scene]) -> Vec<St
 fn check(names: &[&str]) {
     let (scenes, mut wrong) = (scenes(), Vec::new());
     let with_stack = [&scenes[..], &[stack()]].concat();
+    let with_sky = [&[under_sky()], &scenes[..2]].concat();
     for name in names {
         let technique = find(name).unwrap();
         let counts = technique.params().iter().any(|p| p.name == "overflow");
-        let scenes = if counts { &with_stack } else { &scenes };
+        let scenes = match *name {
+            DEFERRED => &with_sky,
+            _ if counts => &with_stack,
+            _ => &scenes,
+        };
         wrong.extend(wrong_settings(technique, scenes));
     }
     wrong.retain(|s| {
@@ -365,6 +397,7 @@ const MOMENTS: [&str; 4] = ["vsm", "evsm", "msm", "vssm"];
 const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
 const RAYS: [&str; 1] = ["ray-traced"];
 const BACKPROJECTED: [&str; 2] = ["backprojection", "bitmask"];
+const DEFERRED: &str = "deferred-shadowing";
 const CONES: [&str; 2] = ["cone-culling", "smoothies"];
 const OTHERS: [&str; 2] = ["convolution-soft-shadows", "mixed-lights"];
 
@@ -381,6 +414,7 @@ fn no_technique_is_left_out() {
         &PLANAR,
         &CONES,
         &OTHERS,
+        &[DEFERRED],
     ]
     .concat();
     for technique in techniques::all() {
@@ -436,6 +470,11 @@ fn settings_of_cones_and_smoothies_act_or_are_warned_of() {
 #[test]
 fn settings_of_convolution_and_mixtures_act_or_are_warned_of() {
     check(&OTHERS);
+}
+
+#[test]
+fn settings_of_deferred_shadowing_act_or_are_warned_of() {
+    check(&[DEFERRED]);
 }
 
 fn warnings(technique: &str, set: &[&str]) -> Vec<String> {

@@ -42,7 +42,7 @@ fn in_order(scene: &Scene, set: &[&str], reversed: bool, blended: bool) -> Vec<f
         for draw in &mut pass.draws {
             if reversed {
                 let old = draw.vertices.as_ref().unwrap();
-                let triangles = old.data.chunks(3 * old.stride as usize).rev();
+                let triangles = old.data.chunks(3 * old.stride).rev();
                 draw.vertices = Some(Arc::new(VertexBuffer {
                     data: triangles.flatten().copied().collect(),
                     stride: old.stride,

@@ -119,12 +119,18 @@ impl EventWriter {
     fn code(&mut self, b: &BlockAccess) {
         let c = &mut self.columns;
         let (covered, written) = (b.covered, b.written());
-        let mut code = u64::from(covered == u64::MAX) * FULL
-            | u64::from(b.ended.hiz) * HIZ
-            | u64::from(b.front) * FRONT
-            | u64::from(b.hiz_read) * HIZ_READ
-            | u64::from(b.hiz_write) * HIZ_WRITE
-            | u64::from(b.witness != 0) * WITNESSED;
+        let flags = [
+            (covered == u64::MAX, FULL),
+            (b.ended.hiz, HIZ),
+            (b.front, FRONT),
+            (b.hiz_read, HIZ_READ),
+            (b.hiz_write, HIZ_WRITE),
+            (b.witness != 0, WITNESSED),
+        ];
+        let mut code = 0;
+        for i in 0..flags.len() {
+            code |= u64::from(flags[i].0) * flags[i].1;
+        }
         if covered != u64::MAX {
             c.mask(OTHERS, covered);
         }
@@ -498,5 +504,23 @@ mod tests {
         }
         assert_eq!(found, texels);
         r.finish().unwrap();
+    }
+
+    #[test]
+    fn codes_that_are_not_known_are_refused() {
+        let mut w = EventWriter::new();
+        w.push(&BlockAccess::default());
+        let data = w.finish();
+        // Behind the head, a byte in each column before the last byte of the code.
+        let last = 12 + 8 * COLUMNS + CODE + CODE_BYTES - 1;
+        let read = |bits: u8| {
+            let mut data = data.clone();
+            data[last] |= bits;
+            EventReader::new(&data).unwrap().next().map(|b| b.unwrap())
+        };
+        assert!(read(HIZ_READ.to_le_bytes()[4]).unwrap().hiz_read);
+        for bits in [0x40, 0x80] {
+            assert!(read(bits).unwrap_err().contains("not known"), "{bits:#x}");
+        }
     }
 }

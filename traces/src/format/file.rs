@@ -232,4 +232,51 @@ mod tests {
         assert!(Entry::at(&long, second).is_none());
         assert!(read(&long).is_err());
     }
+
+    #[test]
+    fn a_section_has_the_size_that_its_header_says() {
+        let file = write(&sections());
+        let second = read(&file).unwrap().entries[1];
+        assert_eq!((second.codec, second.raw), (1, 1000));
+        for raw in [999, 1001] {
+            let error = Entry { raw, ..second }.unpack(&file).unwrap_err();
+            assert!(error.to_string().contains("another size"), "{error}");
+        }
+    }
+
+    #[test]
+    fn an_index_lists_what_is_there_and_no_more() {
+        let file = write(&sections());
+        let all = read(&file).unwrap().entries;
+        let end = all[2].end().unwrap();
+        let with_index = |entries: &[Entry], more: &[u8]| {
+            let mut data = Vec::new();
+            for e in entries {
+                let at = e.offset as usize;
+                data.extend(e.offset.to_le_bytes());
+                data.extend(&file[at..at + HEADER]);
+            }
+            data.extend(more);
+            let index = Section {
+                tag: INDEX,
+                version: 1,
+                frame: 0,
+                part: 0,
+                data,
+            };
+            let index = index.pack(Codec::Raw);
+            let footer = [(end as u64).to_le_bytes(), MAGIC].concat();
+            read(&[&file[..end], &index[..], &footer[..]].concat())
+        };
+        assert!(with_index(&all, &[]).unwrap().lost.is_none());
+        let wrong = [
+            (&all[..2], vec![]),
+            (&all[..], vec![0]),
+            (&all[..], vec![0; 8 + HEADER]),
+        ];
+        for (entries, more) in wrong {
+            let error = with_index(entries, &more).unwrap_err().to_string();
+            assert!(error.contains("does not list"), "{error}");
+        }
+    }
 }

@@ -201,3 +201,15 @@ fn newer_formats_and_other_files_are_refused() {
     let text = Trace::read(b"P6 640 480 and more\n".to_vec()).unwrap_err();
     assert!(matches!(text, TraceError::NotATrace { .. }));
 }
+
+#[test]
+fn a_section_is_there_once() {
+    let mut parts = take_apart(user_frame::trace().to_bytes());
+    let again = parts.iter().find(|p| p.tag == *b"COUN").unwrap().clone();
+    parts.push(again);
+    let error = Trace::read(put_together(&parts)).unwrap_err().to_string();
+    assert!(
+        error.contains("COUN") && error.contains("before it"),
+        "{error}"
+    );
+}

@@ -1,8 +1,10 @@
 //! What is cut out of a trace shows what it showed in it.
 
-use gnomon_raster::GpuConfig;
+use gnomon_raster::{GpuConfig, StoreOp};
 use gnomon_shaders::table;
-use gnomon_traces::{Keep, ReplayDepth, Trace, TraceError, replay, trim};
+use gnomon_traces::{
+    Keep, Meta, RecordOptions, ReplayDepth, Trace, TraceError, record, replay, trim,
+};
 
 use crate::forge::{put_together, take_apart};
 use crate::golden::goldens;
@@ -116,4 +118,23 @@ fn a_cut_that_would_show_something_else_is_refused() {
             "{found}"
         );
     }
+}
+
+/// What a pass would throw away at its end is the result of one that is cut short.
+#[test]
+fn what_is_left_in_the_middle_of_a_pass_is_kept() {
+    let mut frame = user_frame::frame();
+    let pass = &mut frame.list.passes[0];
+    pass.color[0].store = StoreOp::Discard;
+    let depth = pass.depth_stencil.as_mut().unwrap();
+    (depth.depth_store, depth.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
+    let trace = record(Meta::new("user"), &frame, RecordOptions::default()).unwrap();
+    let stores = |draws| {
+        let kept = cut(&trace, &Keep::Draws(0, draws));
+        let pass = kept.recording(0, &table()).unwrap().list.passes.remove(0);
+        let depth = pass.depth_stencil.unwrap();
+        [pass.color[0].store, depth.depth_store, depth.stencil_store]
+    };
+    assert_eq!(stores(0..1), [StoreOp::Store; 3]);
+    assert_eq!(stores(0..2), [StoreOp::Discard; 3]);
 }

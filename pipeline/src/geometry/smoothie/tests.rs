@@ -166,23 +166,14 @@ fn cones_and_sheets_touch_the_light() {
     let radius = 0.4;
     let (_, found) = of(block(), Attachment::Cones(radius));
     assert!(found.corners >= 4 && found.edges >= 4);
-    for t in found.vertices.chunks(3) {
-        let on = t.iter().filter(|v| v.distance < REACH.far);
-        for v in on {
-            assert!((v.blocker - v.distance).abs() < 1e-9);
-            for far in t
-                .iter()
-                .filter(|f| f.distance == REACH.far && f.blocker == v.blocker)
-            {
-                let [a, b] = [far, v].map(|v| FRAME.local(v.position));
-                // Not every pair of a sheet is a line of its own: only those of one corner.
-                let met = a + (b - a) * (a.z / (a.z - b.z));
-                if (met.truncate().length() - radius).abs() < 1e-6 {
-                    continue;
-                }
-                assert!(t.iter().filter(|f| f.distance < REACH.far).count() == 2);
-            }
+    // Sheets are first. Each side of a cone is a line through its vertex and the rim.
+    for t in found.vertices.chunks(3).skip(2 * found.edges) {
+        let [apex, rest @ ..] = [0, 1, 2].map(|k| FRAME.local(t[k].position));
+        for far in rest {
+            let met = far + (apex - far) * (far.z / (far.z - apex.z));
+            assert!((met.truncate().length() - radius).abs() < 1e-9, "{met}");
         }
+        assert!(t.iter().all(|v| v.blocker == t[0].distance));
     }
     // A sheet's plane has all of the light on one side.
     let sheets = found.vertices.chunks(3).take(2 * found.edges);

@@ -20,6 +20,7 @@
 //! written costs time, not the result.
 
 mod key;
+mod transport;
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -36,6 +37,7 @@ use crate::world::files::{self, FileError};
 use crate::world::light::LightShape;
 use crate::world::scene::Scene;
 use key::Key;
+pub use transport::CachedTransport;
 
 const MAGIC: &[u8; 8] = b"GNOMVIS\n";
 const FORMAT_VERSION: u32 = 1;

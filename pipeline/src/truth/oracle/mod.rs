@@ -12,3 +12,4 @@ pub mod environment;
 pub mod hard;
 pub mod sampled;
 pub mod surfaces;
+pub mod transport;

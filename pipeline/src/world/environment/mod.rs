@@ -34,6 +34,7 @@
 //! ```
 
 pub mod cube;
+pub mod decomposition;
 mod error;
 pub mod fit;
 mod layout;

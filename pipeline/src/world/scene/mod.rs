@@ -9,6 +9,7 @@ mod near;
 mod open;
 mod placed;
 mod pyramid;
+mod rest;
 mod source;
 mod view_warnings;
 
@@ -19,6 +20,7 @@ pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
 pub use placed::PlacedError;
 pub(crate) use pyramid::{Pyramid, clip, clip_with};
+pub use rest::Rest;
 pub use source::SceneSource;
 
 pub use crate::world::material::{Material, MaterialPart};
@@ -93,6 +95,8 @@ pub struct Object {
     pub material: Material,
     /// Triangles that are shaded differently; each is in one part at most.
     pub parts: Vec<MaterialPart>,
+    /// Where the object was before it moved as a whole, if that is known.
+    pub rest: Option<Rest>,
 }
 
 impl Object {
@@ -105,6 +109,7 @@ impl Object {
             receives: true,
             material,
             parts: Vec::new(),
+            rest: None,
         }
     }
 

@@ -49,6 +49,7 @@ impl Scene {
         for object in &mut placed.objects {
             let positions = object.mesh.positions().iter();
             let positions = positions.map(|p| narrow(place(widen(*p)))).collect();
+            object.rest = None;
             let mesh = Mesh::new(positions, object.mesh.triangles().to_vec(), Shading::Flat);
             object.mesh = Arc::new(mesh.map_err(|source| PlacedError::Mesh {
                 object: object.name.clone(),

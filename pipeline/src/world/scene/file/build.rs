@@ -1,6 +1,8 @@
 //! From the tables of a scene file to a [`Scene`].
 
-use glam::{DMat4, DVec3};
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, DVec3};
 
 use super::check::Source;
 use super::motion::{self, Moved};
@@ -12,8 +14,8 @@ use crate::world::files::SceneFolder;
 use crate::world::light::{ConvexPolygon, Light, LightShape};
 use crate::world::mesh::Shading;
 use crate::world::scene::near;
-use crate::world::scene::{Camera, Material, Object, Scene, SceneWarning};
-use crate::world::shape::on_circle;
+use crate::world::scene::{Camera, Material, Object, Rest, Scene, SceneWarning};
+use crate::world::shape::{Shape, on_circle};
 
 type Built<T> = Result<T, SceneFileError>;
 
@@ -208,15 +210,17 @@ fn object(
         None => format!("{} {}", table.mesh.kind(), index + 1),
     };
     let moved = motion::moved(source, table.motion.as_ref(), time)?;
-    let place = world_from_local(source, table, moved)?;
+    let place = Place::read(source, table, moved)?;
+    let rest = table.motion.is_some().then(|| read.shape.clone());
     let mesh = read
         .shape
-        .transformed(place)
+        .transformed(place.world_from_local())
         .into_mesh(Shading::Crease { degrees })
         .map_err(|e| object_error(source, table, &name, &e))?;
     let mut object = Object::new(name, mesh, material(source, table.material.as_ref())?);
     object.casts = table.casts.unwrap_or(!table.mesh.is_sheet());
     object.receives = table.receives.unwrap_or(true);
+    object.rest = rest.and_then(|shape| place.rest(shape, Shading::Crease { degrees }));
     if table.material.is_none() {
         object.parts = read.parts;
     }
@@ -239,31 +243,63 @@ fn object_error(
 }
 
 /// Scale, then rotation about x, y, z, then translation.
-fn world_from_local(source: &Source<'_>, table: &ObjectTable, moved: Moved) -> Built<DMat4> {
-    let mut place = DMat4::IDENTITY;
-    let own = |name, value: &Option<_>| match value {
-        Some(value) => source.finite(name, value),
-        None => Ok(DVec3::ZERO),
-    };
-    let offset = own("translate", &table.translate)? + moved.translate;
-    if offset != DVec3::ZERO {
-        place *= DMat4::from_translation(offset);
-    }
-    let angles = own("rotate", &table.rotate)? + moved.rotate;
-    if angles != DVec3::ZERO {
-        place = place * about(2, angles.z) * about(1, angles.y) * about(0, angles.x);
-    }
-    if let Some(scale) = &table.scale {
-        let factors = DVec3::from(scale.get_ref().0);
-        if !factors.is_finite() || factors.abs().min_element() == 0.0 {
+#[derive(Clone, Copy)]
+struct Place {
+    scale: Option<DVec3>,
+    /// Degrees.
+    angles: DVec3,
+    offset: DVec3,
+}
+
+impl Place {
+    fn read(source: &Source<'_>, table: &ObjectTable, moved: Moved) -> Built<Self> {
+        let own = |name, value: &Option<_>| match value {
+            Some(value) => source.finite(name, value),
+            None => Ok(DVec3::ZERO),
+        };
+        let offset = own("translate", &table.translate)? + moved.translate;
+        let angles = own("rotate", &table.rotate)? + moved.rotate;
+        let factors = table.scale.as_ref().map(|s| DVec3::from(s.get_ref().0));
+        let bad = factors.filter(|f| !f.is_finite() || f.abs().min_element() == 0.0);
+        if let (Some(factors), Some(scale)) = (bad, &table.scale) {
             let message = format!(
                 "scale is {factors:?}; valid is a finite number other than 0, or three of them"
             );
             return Err(source.error(scale.span(), message));
         }
-        place *= DMat4::from_scale(factors);
+        Ok(Self {
+            scale: factors,
+            angles,
+            offset,
+        })
     }
-    Ok(place)
+
+    fn world_from_local(&self) -> DMat4 {
+        let mut place = DMat4::IDENTITY;
+        if self.offset != DVec3::ZERO {
+            place *= DMat4::from_translation(self.offset);
+        }
+        if self.angles != DVec3::ZERO {
+            let [x, y, z] = self.angles.to_array();
+            place = place * about(2, z) * about(1, y) * about(0, x);
+        }
+        if let Some(factors) = self.scale {
+            place *= DMat4::from_scale(factors);
+        }
+        place
+    }
+
+    /// The object without rotation and translation.
+    fn rest(&self, shape: Shape, shading: Shading) -> Option<Rest> {
+        let scaled = DMat4::from_scale(self.scale.unwrap_or(DVec3::ONE));
+        let mesh = shape.transformed(scaled).into_mesh(shading).ok()?;
+        let [x, y, z] = self.angles.to_array();
+        Some(Rest {
+            mesh: Arc::new(mesh),
+            turn: DMat3::from_mat4(about(2, z) * about(1, y) * about(0, x)),
+            offset: self.offset,
+        })
+    }
 }
 
 /// Rotation by `degrees` about world axis 0, 1 or 2, counter-clockwise seen

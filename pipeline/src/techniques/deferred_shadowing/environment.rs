@@ -1,0 +1,360 @@
+//! The paper's frame, under an environment: light of vertices, what is hidden of it at
+//! each pixel, and the difference.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use gnomon_raster::state::ColorTargetState;
+use gnomon_raster::{
+    Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, Sampler, TextureBinding,
+    TextureDescriptor, TextureId, VertexBuffer,
+};
+use gnomon_shaders::deferred::lit::LessObscured;
+use gnomon_shaders::deferred::obscured::{Highlight, ObscuredRadiance, Transported};
+use gnomon_shaders::transform::Surfaces;
+
+use super::atlas::Atlas;
+use super::bodies::{Body, Evaluation, bodies, coefficients};
+use super::light::HarmonicLight;
+use super::notes::Found;
+use super::radiance::{Radiance, RadianceTextures, float_format, is_glossy};
+use super::settings::Settings;
+use super::shadows::{Job, Receivers, turns};
+use super::sheets::{Sheet, Sheets};
+use super::sources::{Source, of_environment};
+use crate::parts::passes::equal_depth;
+use crate::parts::shadowed_frame::ShadowedFrame;
+use crate::parts::visibility::{VisibilityTexture, attachment, binding};
+use crate::technique::{Frame, Pass, PassRole, TechniqueError};
+use crate::world::environment::PlacedEnvironment;
+use crate::world::mesh::narrow;
+use crate::world::scene::Scene;
+
+/// The frame; `scene` has no ambient light, since all of the map is in L_s.
+pub(super) fn frame(
+    scene: &Scene,
+    placed: &PlacedEnvironment,
+    size: [u32; 2],
+    settings: &Settings,
+) -> Result<Frame, TechniqueError> {
+    let mut frame = ShadowedFrame::new(scene, size, &settings.frame)?.with_ambient();
+    let bodies = bodies(scene, &frame.draws, settings);
+    let sheets = Sheets::new(&bodies, &frame.draws);
+    let given = Given {
+        scene,
+        placed,
+        bodies: &bodies,
+        sheets: &sheets,
+        settings,
+        highlights: frame.draws.has_highlights(),
+    };
+    let mut deferred = Deferred::new(given, size, &mut frame.recording)?;
+    let passes = deferred.passes(&frame);
+    deferred.found.tell(&bodies, &mut frame.notes);
+    let visibility = VisibilityTexture::red(deferred.visibility);
+    passes.into_iter().for_each(|pass| frame.push(pass));
+    frame.finish(visibility.output())
+}
+
+/// What a frame is made from.
+#[derive(Clone, Copy)]
+struct Given<'f, 'a> {
+    scene: &'f Scene,
+    placed: &'f PlacedEnvironment,
+    bodies: &'f [Body<'a>],
+    sheets: &'f Sheets<'f, 'a>,
+    settings: &'f Settings,
+    /// Whether materials have highlights.
+    highlights: bool,
+}
+
+/// Images of what occluders take: diffuse, and glossy.
+struct Obscured {
+    diffuse: TextureId,
+    glossy: Option<TextureId>,
+}
+
+struct Deferred<'f, 'a> {
+    bodies: &'f [Body<'a>],
+    sheets: &'f Sheets<'f, 'a>,
+    settings: &'f Settings,
+    sources: Vec<Source>,
+    light: Arc<HarmonicLight>,
+    radiance: RadianceTextures,
+    obscured: Obscured,
+    /// Share of the environment's light that arrives.
+    visibility: TextureId,
+    atlas: Atlas,
+    /// Vertices of each sheet with the transport of all lights, and which lights reach
+    /// it.
+    transported: Vec<(Arc<VertexBuffer>, Vec<bool>)>,
+    jobs: Vec<Job>,
+    found: Found,
+}
+
+impl<'f, 'a> Deferred<'f, 'a> {
+    fn new(
+        given: Given<'f, 'a>,
+        size: [u32; 2],
+        recording: &mut Recording,
+    ) -> Result<Self, TechniqueError> {
+        let Given {
+            placed,
+            bodies,
+            sheets,
+            settings,
+            ..
+        } = given;
+        let sources = of_environment(placed, &given.scene.lights, settings);
+        let glossy = given.highlights && sheets.all.iter().any(is_glossy);
+        let bands = settings.transport;
+        let light = HarmonicLight::of_map(
+            &placed.map.cube,
+            bands.bands,
+            glossy.then_some(bands.glossy_bands),
+        );
+        let mut found = Found::of(bodies);
+        let evaluation = (Evaluation::new(settings), glossy);
+        let transported: Vec<_> = sheets
+            .all
+            .iter()
+            .map(|s| transported(s, &bodies[s.body], &sources, &evaluation, &mut found))
+            .collect();
+        let jobs = jobs(bodies, sheets, &sources, &transported, settings);
+        let maps = jobs.iter().map(|j| j.maps.len()).sum();
+        let atlas = Atlas::create(maps, settings.side, settings.half_floats, recording)?;
+        let radiance = RadianceTextures::create(sheets, size, glossy, settings, recording)?;
+        let mut image = |label: &str, format| {
+            recording.create(&TextureDescriptor::d2(label, format, size[0], size[1]))
+        };
+        let obscured = Obscured {
+            diffuse: image("obscured radiance", float_format(settings))?,
+            glossy: match glossy {
+                false => None,
+                true => Some(image("obscured glossy radiance", float_format(settings))?),
+            },
+        };
+        found.lights(sources.len(), settings);
+        found.maps.add(&jobs);
+        Ok(Self {
+            bodies,
+            sheets,
+            settings,
+            sources,
+            light,
+            radiance,
+            obscured,
+            visibility: image("visibility", Format::R32Float)?,
+            atlas,
+            transported,
+            jobs,
+            found,
+        })
+    }
+
+    fn passes(&mut self, frame: &ShadowedFrame<'a>) -> Vec<Pass> {
+        let radiance = Radiance {
+            bodies: self.bodies,
+            sheets: self.sheets,
+            light: &self.light,
+            settings: self.settings,
+            draws: &frame.draws,
+            textures: &self.radiance,
+        };
+        let mut passes = radiance.passes(&frame.targets);
+        let jobs = std::mem::take(&mut self.jobs);
+        let (mut turns, left_out) = turns(jobs, self.atlas.capacity());
+        self.found.maps.left_out += left_out;
+        if turns.is_empty() {
+            turns.push(Vec::new()); // the images have to be cleared
+        }
+        for (turn, jobs) in turns.iter().enumerate() {
+            if !jobs.is_empty() {
+                let maps: Vec<_> = jobs.iter().flat_map(|j| j.maps.clone()).collect();
+                let label = |what: &str| what.to_owned();
+                let own = self.atlas.passes(&maps, self.bodies, &frame.draws, &label);
+                passes.extend(own);
+            }
+            passes.push(self.obscure(frame, jobs, turn == 0));
+        }
+        passes.push(self.lit(frame));
+        passes
+    }
+
+    /// Adds what the maps in the atlas take.
+    fn obscure(&self, frame: &ShadowedFrame<'a>, jobs: &[Job], first: bool) -> Pass {
+        let load = if first {
+            LoadOp::Clear([0.0; 4])
+        } else {
+            LoadOp::Load
+        };
+        let mut draws = Vec::new();
+        let mut cell = 0;
+        for job in jobs {
+            let maps = job.maps.iter().enumerate();
+            let view = &frame.draws.view;
+            let maps: Vec<_> = maps
+                .map(|(k, map)| self.atlas.look_up(map, cell + k, view))
+                .collect();
+            cell += job.maps.len();
+            let shader = ObscuredRadiance {
+                energy: self.sources[job.light].energy.map(|e| e as f32),
+                combine: self.settings.combine,
+                maps,
+                highlight: None,
+            };
+            draws.extend(
+                self.sheets_of(job)
+                    .map(|k| self.take(frame, job, k, &shader)),
+            );
+        }
+        let images = std::iter::once(self.obscured.diffuse).chain(self.obscured.glossy);
+        let pass = RenderPass {
+            label: "obscured radiance".into(),
+            color: images.map(|t| attachment(t, load)).collect(),
+            depth_stencil: frame.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws,
+        };
+        Pass::new(PassRole::LookUp, pass)
+    }
+
+    /// Sheets of a job's body that its light reaches.
+    fn sheets_of(&self, job: &Job) -> impl Iterator<Item = usize> {
+        let sheets = self.sheets.all.iter().enumerate();
+        sheets
+            .filter(|(k, s)| s.body == job.body && self.transported[*k].1[job.light])
+            .map(|(k, _)| k)
+    }
+
+    fn take(
+        &self,
+        frame: &ShadowedFrame<'a>,
+        job: &Job,
+        sheet: usize,
+        shader: &ObscuredRadiance,
+    ) -> Draw {
+        let view = &frame.draws.view;
+        let (own, vertices) = (&self.sheets.all[sheet], &self.transported[sheet].0);
+        let highlight = (self.obscured.glossy.is_some() && is_glossy(own)).then(|| Highlight {
+            towards: narrow(self.sources[job.light].at.towards_from(DVec3::ZERO)),
+            eye: narrow(view.eye()),
+            shininess: own.surface.material.shininess,
+        });
+        let attachments = 1 + usize::from(self.obscured.glossy.is_some());
+        let fragment = ObscuredRadiance {
+            highlight,
+            ..shader.clone()
+        };
+        let pipeline = RenderPipeline {
+            label: "obscured radiance".into(),
+            vertex: Transported {
+                clip_from_world: view.clip_from_world,
+                light: job.light as u32,
+            }
+            .stage(),
+            fragment: Some(fragment.stage()),
+            primitive: own.primitive(),
+            depth_stencil: equal_depth(),
+            color_targets: vec![ColorTargetState::ADDITIVE; attachments],
+        };
+        Draw {
+            textures: vec![bilinear(self.atlas.texture())],
+            ..own.draw(pipeline, vertices)
+        }
+    }
+
+    /// What is left, onto the picture.
+    fn lit(&self, frame: &ShadowedFrame<'a>) -> Pass {
+        let images = [Some(self.radiance.image), Some(self.obscured.diffuse)];
+        let glossy = [self.radiance.glossy_image(), self.obscured.glossy];
+        let textures = || images.into_iter().chain(glossy).flatten().map(binding);
+        let surfaces = frame.draws.surfaces().iter();
+        let draws = surfaces.map(|s| {
+            let has_glossy = self.obscured.glossy.is_some() && s.material.specular != [0.0; 3];
+            let shader = LessObscured {
+                albedo: s.material.albedo,
+                specular: has_glossy.then_some(s.material.specular),
+            };
+            let pipeline = RenderPipeline {
+                label: "lit".into(),
+                vertex: Surfaces(frame.draws.view.clip_from_world).stage(),
+                fragment: Some(shader.stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![ColorTargetState::ADDITIVE, ColorTargetState::OPAQUE],
+            };
+            Draw {
+                textures: textures().take(if has_glossy { 4 } else { 2 }).collect(),
+                ..s.draw(pipeline)
+            }
+        });
+        let mut color = frame.targets.color(LoadOp::Load);
+        color.push(attachment(self.visibility, LoadOp::Clear([1.0; 4])));
+        let pass = RenderPass {
+            label: "lit".into(),
+            color,
+            depth_stencil: frame.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws: draws.collect(),
+        };
+        Pass::new(PassRole::Lit, pass)
+    }
+}
+
+/// For look-ups between texels.
+pub(super) fn bilinear(texture: TextureId) -> TextureBinding {
+    TextureBinding {
+        texture,
+        sampler: Sampler::bilinear(),
+    }
+}
+
+/// Position, normal, and for each light T and, where something is glossy, V (§6.2.3), of a
+/// sheet's vertices; and whether any of them has some of a light.
+fn transported(
+    sheet: &Sheet<'_, '_>,
+    body: &Body<'_>,
+    sources: &[Source],
+    (evaluation, glossy): &(Evaluation, bool),
+    found: &mut Found,
+) -> (Arc<VertexBuffer>, Vec<bool>) {
+    let directions: Vec<DVec3> = sources
+        .iter()
+        .map(|s| body.own(s.at.towards_from(DVec3::ZERO)))
+        .collect();
+    let harmonics = evaluation.towards(&directions);
+    let mut reached = vec![false; sources.len()];
+    let mut data = Vec::new();
+    for &v in &sheet.vertices {
+        let (position, normal) = sheet.vertex(v);
+        data.extend(position.into_iter().chain(normal));
+        let own = coefficients(&sheet.transport, v as usize);
+        for (light, at) in harmonics.iter().enumerate() {
+            let [t, seen] = at.of(&own);
+            found.ringing(t);
+            let seen = if *glossy { seen.clamp(0.0, 1.0) } else { 0.0 };
+            reached[light] |= t > 0.0 || seen > 0.0;
+            data.extend([t.max(0.0) as f32, seen as f32]);
+        }
+    }
+    let stride = 6 + 2 * sources.len();
+    (Arc::new(VertexBuffer { data, stride }), reached)
+}
+
+fn jobs(
+    bodies: &[Body<'_>],
+    sheets: &Sheets<'_, '_>,
+    sources: &[Source],
+    transported: &[(Arc<VertexBuffer>, Vec<bool>)],
+    settings: &Settings,
+) -> Vec<Job> {
+    let receivers = Receivers::new(bodies, settings);
+    let reaches = |light: usize, body: usize| {
+        let own = sheets.all.iter().zip(transported);
+        own.clone()
+            .any(|(s, (_, reached))| s.body == body && reached[light])
+    };
+    let of_light = |(light, source): (usize, &Source)| {
+        receivers.jobs(light, source, settings, |body| reaches(light, body))
+    };
+    sources.iter().enumerate().flat_map(of_light).collect()
+}

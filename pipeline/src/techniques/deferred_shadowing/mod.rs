@@ -1,0 +1,88 @@
+//! Deferred shadowing (Tamura, Johan and Nishita 2006; docs/papers.md): objects lit by an
+//! environment, each as if it were alone, less what the others hide.
+//!
+//! What an object hides of itself does not change while it moves as a whole. So it is
+//! computed once for its shape, per vertex and in spherical harmonics
+//! ([`crate::truth::oracle::transport`]); under any environment and any rotation the
+//! light of a vertex, L_s, is an inner product. What other objects hide, L_o, is found
+//! for what is seen: the environment is cut into lights, and for each light and
+//! receiver the shadow of the occluders on a plane is convolved with a square as large
+//! as the light seems from there, and looked up at each pixel. The picture is
+//! `L_s - L_o`.
+//!
+//! Visibility is the share of the environment's light that arrives, by luminance. A
+//! scene without an environment, or under one of its lights alone, has visibility of
+//! each light instead: transport towards it over that of an open surface, times what
+//! occlusion maps leave; a light with a place projects centrally.
+//!
+//! # Cost of motion
+//!
+//! A frame is made anew from a scene, and so all maps are drawn in each; the paper keeps
+//! those of pairs that did not move. Transport, lights and harmonics of the map are kept
+//! by content.
+//!
+//! Known errors, of the method: shadows of one object on another have the softness of
+//! one distance per map; light is smooth between vertices; six bands know no sharp
+//! self-shadow. Of this project: see `below` in [`placing`], which keeps occluders from
+//! shading what lies before them, and the plane in [`settings`].
+
+mod atlas;
+mod bodies;
+mod distant;
+mod environment;
+mod groups;
+mod light;
+mod notes;
+mod placing;
+mod radiance;
+mod settings;
+mod shadows;
+mod sheets;
+mod sources;
+
+use crate::param_list;
+use crate::parts::frame_settings::FrameSettings;
+use crate::technique::{
+    Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
+};
+use crate::world::scene::Scene;
+use settings::Settings;
+
+/// The registry's entry.
+pub(crate) struct DeferredShadowing;
+
+impl Technique for DeferredShadowing {
+    fn name(&self) -> &'static str {
+        "deferred-shadowing"
+    }
+
+    fn summary(&self) -> &'static str {
+        "moving objects under environments: precomputed self-shadows, less convolved shadows of each other"
+    }
+
+    fn params(&self) -> &'static [ParamInfo] {
+        param_list!(Settings::PARAMS, FrameSettings::PARAMS)
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::of_light_views(ShadowKind::Soft)
+    }
+
+    fn frame(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+    ) -> Result<Frame, TechniqueError> {
+        let settings = Settings::read(params)?;
+        let environment = scene.environment.as_ref();
+        match environment.filter(|_| settings.frame.light.is_none()) {
+            None => distant::frame(scene, size, &settings),
+            Some(placed) => {
+                let mut dark = scene.clone();
+                dark.ambient = [0.0; 3]; // the residual is in L_s
+                environment::frame(&dark, placed, size, &settings)
+            }
+        }
+    }
+}

@@ -168,6 +168,23 @@ pub(super) fn folded_cone(folds: u32) -> Result<Mesh, ReproduceError> {
     .into_mesh(Shading::Flat)?)
 }
 
+/// A knot with as many vertices as the teapot of Tamura et al.: 2,421.
+pub(super) fn knot_mesh() -> Result<Mesh, ReproduceError> {
+    let shape = shape::torus_knot(2, 3, 0.62, 0.26, 0.2, 269, 9, DVec3::new(-0.2, 0.9, 0.0));
+    Ok(shape.into_mesh(Shading::Smooth)?)
+}
+
+/// The knot, a board and a ball over a floor, apart from each other.
+pub(super) fn knot_over_floor() -> Result<Scene, ReproduceError> {
+    let knot = Object::new("knot", knot_mesh()?, CLAY);
+    let board = shape::cuboid(DVec3::new(1.3, 0.6, 0.2), DVec3::new(0.12, 1.1, 0.9));
+    let ball = shape::icosphere(2, 0.35, DVec3::new(0.4, 0.36, 1.0));
+    let light = Light::horizontal_square(DVec3::new(1.0, 5.0, 1.0), 1.0);
+    let camera = Camera::look_at([0.6, 2.2, 4.2], [0.1, 0.6, 0.0]);
+    let objects = vec![knot, solid("board", board)?, solid("ball", ball)?];
+    scene("knot of 2,421 vertices".to_owned(), camera, light, objects)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -195,21 +212,4 @@ mod tests {
         assert_eq!(cylinders(8, 1.0).unwrap().casters().count(), 8);
         assert_eq!(lights(3).unwrap().lights.len(), 3);
     }
-}
-
-/// A knot with as many vertices as the teapot of Tamura et al.: 2,421.
-pub(super) fn knot_mesh() -> Result<Mesh, ReproduceError> {
-    let shape = shape::torus_knot(2, 3, 0.62, 0.26, 0.2, 269, 9, DVec3::new(-0.2, 0.9, 0.0));
-    Ok(shape.into_mesh(Shading::Smooth)?)
-}
-
-/// The knot, a board and a ball over a floor, apart from each other.
-pub(super) fn knot_over_floor() -> Result<Scene, ReproduceError> {
-    let knot = Object::new("knot", knot_mesh()?, CLAY);
-    let board = shape::cuboid(DVec3::new(1.3, 0.6, 0.2), DVec3::new(0.12, 1.1, 0.9));
-    let ball = shape::icosphere(2, 0.35, DVec3::new(0.4, 0.36, 1.0));
-    let light = Light::horizontal_square(DVec3::new(1.0, 5.0, 1.0), 1.0);
-    let camera = Camera::look_at([0.6, 2.2, 4.2], [0.1, 0.6, 0.0]);
-    let objects = vec![knot, solid("board", board)?, solid("ball", ball)?];
-    scene("knot of 2,421 vertices".to_owned(), camera, light, objects)
 }

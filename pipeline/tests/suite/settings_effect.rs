@@ -398,10 +398,6 @@ const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
 const RAYS: [&str; 1] = ["ray-traced"];
 const BACKPROJECTED: [&str; 2] = ["backprojection", "bitmask"];
 const DEFERRED: &str = "deferred-shadowing";
-const MOMENTS: [&str; 4] = ["vsm", "evsm", "msm", "vssm"];
-const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
-const RAYS: [&str; 1] = ["ray-traced"];
-const BACKPROJECTED: [&str; 2] = ["backprojection", "bitmask"];
 const CONES: [&str; 2] = ["cone-culling", "smoothies"];
 const OTHERS: [&str; 2] = ["convolution-soft-shadows", "mixed-lights"];
 

@@ -112,6 +112,7 @@ fn conditions_can_be_evaluated() {
                 condition["all"].is_array()
                     || condition["any"].is_array()
                     || condition["a_light_is"].is_string()
+                    || condition["scene_has"].is_string()
             );
             return;
         };

@@ -39,9 +39,13 @@ impl LightCover for AreaSum {
     #[inline(always)]
     fn add<L: Lanes>(&self, l: L, covered: &mut F32<L>, patch: &Patch<L>) {
         let zero = F32::splat(l, 0.0);
-        let [width, height] = [patch.x, patch.y].map(
+        let spans = [patch.x, patch.y];
+        let [width, height] = each2(
             #[inline(always)]
-            |[low, high]| (high.clamp(-1.0, 1.0) - low.clamp(-1.0, 1.0)).max(zero),
+            |i| {
+                let [low, high] = spans[i];
+                (high.clamp(-1.0, 1.0) - low.clamp(-1.0, 1.0)).max(zero)
+            },
         );
         let area = width * height;
         *covered = *covered + patch.some.select_f32(area, zero);
@@ -79,9 +83,10 @@ impl BitField {
     /// Bits from the first to before the second.
     #[inline(always)]
     fn mask<L: Lanes>(l: L, [low, high]: [I32<L>; 2]) -> U32<L> {
-        let [low, high] = [low, high.max(low)].map(
+        let places = [low, high.max(low)];
+        let [low, high] = each2(
             #[inline(always)]
-            |n| power_of_two(l, n).to_i32(),
+            |i| power_of_two(l, places[i]).to_i32(),
         );
         (high - low).to_u32()
     }

@@ -34,11 +34,16 @@ pub fn hamburger<L: Lanes>(l: L, means: [F32<L>; 4], depth: F32<L>, spread: f32)
     let b1 = [a * kept, b * kept + SPREAD * spread];
     let b3 = [c * kept, d * kept + SPREAD * spread];
     let Roots { low, high } = roots(l, [b1[0], b1[1], b3[0], b3[1]], depth);
-    let mixed = |x: F32<L>, y: F32<L>| (x * y - b1[0] * (x + y)) + b1[1];
-    let before_one = mixed(depth, high) / ((high - low) * (depth - low));
-    let behind_none = F32::splat(l, 1.0) - mixed(low, high) / ((depth - low) * (depth - high));
+    let before_one = mixed(b1, depth, high) / ((high - low) * (depth - low));
+    let behind_none = F32::splat(l, 1.0) - mixed(b1, low, high) / ((depth - low) * (depth - high));
     let beyond_high = depth.gt(high).select_f32(behind_none, before_one);
     depth.gt(low).select_f32(beyond_high, zero).clamp(0.0, 1.0)
+}
+
+/// The mean of `(z − x) (z − y)` over the depths `z` whose first two means are `b1`.
+#[inline(always)]
+fn mixed<L: Lanes>(b1: [F32<L>; 2], x: F32<L>, y: F32<L>) -> F32<L> {
+    (x * y - b1[0] * (x + y)) + b1[1]
 }
 
 /// Solves for the polynomial that is orthogonal to those through `depth`, by the

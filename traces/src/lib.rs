@@ -15,7 +15,6 @@ pub mod history;
 pub mod judged;
 pub mod maps;
 mod meta;
-mod prefix;
 pub mod profile;
 mod record;
 mod replay;

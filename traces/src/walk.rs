@@ -73,7 +73,7 @@ impl<'a> Walk<'a> {
     }
 
     /// All passes before number `end`.
-    fn finish_passes(&mut self, end: usize) -> Result<(), Error> {
+    pub(crate) fn finish_passes(&mut self, end: usize) -> Result<(), Error> {
         let passes = &self.frame.list.passes;
         while self.next[0] < end {
             self.finish_pass(&passes[self.next[0]])?;
@@ -105,7 +105,7 @@ impl<'a> Walk<'a> {
 
 /// Draws `first..end` of a pass: behind its first it loads what is there, and only the
 /// `last` part forgets what the pass does.
-fn part(pass: &RenderPass, first: usize, end: usize, last: bool) -> RenderPass {
+pub(crate) fn part(pass: &RenderPass, first: usize, end: usize, last: bool) -> RenderPass {
     let mut part = pass.clone();
     part.draws.truncate(end);
     part.draws.drain(..first);

@@ -2,11 +2,11 @@
 
 use core::ops::Range;
 
-use gnomon_raster::{CommandList, Error, Gpu, GpuConfig, LoadOp, Recording, RenderPass, StoreOp};
+use gnomon_raster::{Error, GpuConfig, Recording, RenderPass};
 
 use super::{Keep, check};
 use crate::error::TraceError;
-use crate::prefix::until;
+use crate::walk::{Walk, part};
 
 /// What is kept of a frame.
 pub(super) struct Cut {
@@ -61,37 +61,25 @@ impl Cut {
         for (name, id) in recording.outputs() {
             kept.name_output(name, id)?;
         }
-        let ([first, draw], [last, end]) = (self.first, self.last);
+        let (first, last) = (self.first[0], self.last[0]);
         let passes = recording.list.passes.get(first..=last).unwrap_or_default();
-        kept.list.passes = passes.to_vec();
-        if let Some(pass) = kept.list.passes.last_mut()
-            && end < pass.draws.len()
-        {
-            pass.draws.truncate(end);
-            keep_results(pass);
-        }
-        if let Some(pass) = kept.list.passes.first_mut()
-            && draw > 0
-        {
-            pass.draws.drain(..draw);
-            load_state(pass);
-        }
+        let kept_of = |(number, pass): (usize, &RenderPass)| {
+            let count = pass.draws.len();
+            let draws = self.draws_of(number, count);
+            part(pass, draws.start, draws.end.min(count), draws.end > count)
+        };
+        kept.list.passes = (first..).zip(passes).map(kept_of).collect();
         Ok(kept)
     }
 
     /// Textures before the first draw that is kept.
     fn state_before(&self, recording: &Recording, config: GpuConfig) -> Result<Recording, Error> {
-        let [pass, draw] = self.first;
-        let list = match (pass, draw) {
-            (pass, 0) => CommandList {
-                passes: recording.list.passes[..pass].to_vec(),
-            },
-            (pass, draw) => until(&recording.list, [pass, draw - 1]),
-        };
-        let mut gpu = Gpu::new(config)?;
-        gpu.load(recording)?;
-        gpu.submit(&list)?;
-        gpu.save()
+        let mut walk = Walk::start(recording, config)?;
+        match self.first {
+            [pass, 0] => walk.finish_passes(pass)?,
+            [pass, draw] => walk.reach([pass, draw - 1]).map(|_| ())?,
+        }
+        walk.gpu.save()
     }
 
     /// Which draws are kept of a pass; without end where all behind the first are.
@@ -116,18 +104,4 @@ fn place(passes: &[RenderPass], mut draw: usize) -> [usize; 2] {
         draw -= pass.draws.len();
     }
     unreachable!("the range was checked")
-}
-
-fn keep_results(pass: &mut RenderPass) {
-    pass.color.iter_mut().for_each(|a| a.store = StoreOp::Store);
-    if let Some(a) = &mut pass.depth_stencil {
-        (a.depth_store, a.stencil_store) = (StoreOp::Store, StoreOp::Store);
-    }
-}
-
-fn load_state(pass: &mut RenderPass) {
-    pass.color.iter_mut().for_each(|a| a.load = LoadOp::Load);
-    if let Some(a) = &mut pass.depth_stencil {
-        (a.depth_load, a.stencil_load) = (LoadOp::Load, LoadOp::Load);
-    }
 }

@@ -17,11 +17,20 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use crate::technique::Choice;
+use crate::technique::{Choice, Condition, LightFact, Param};
 use crate::truth::oracle::area::emitter::Emitter;
 use crate::truth::oracle::sampled::{jitter, on_light};
 use crate::world::error::LightError;
 use crate::world::light::{HardLight, Light, LightShape};
+
+/// The seed of points that are jittered always.
+pub(crate) const JITTER_SEED: Param<u64> = Param::<u64>::whole(
+    "seed",
+    1,
+    [0, u32::MAX as u64],
+    "of the jitter of the light's points",
+)
+.when(Condition::Lights(LightFact::Extended));
 
 /// How points are spread over the unit square.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,10 +2,9 @@
 //! (docs/papers.md, baselines).
 
 use crate::map_support::{
-    SIZE, by, error, figure, plates, sampled_plate_error, scene, sized, truth,
+    self, SIZE, by, error, figure, plates, sampled_plate_error, scene, sized, truth,
 };
 use glam::DVec3;
-use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
 use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth};
 use gnomon_pipeline::world::light::LightShape;
 use gnomon_pipeline::world::mesh::Shading;
@@ -96,36 +95,7 @@ fn many_rays_are_the_closed_form_within_their_steps() {
 /// cell, have less, falling as N^-3/2, for only cells that an edge crosses vary.
 #[test]
 fn variance_falls_as_predicted() {
-    const SEEDS: u32 = 24;
-    let size = [40, 28];
-    let scene = scene("parallel-plates");
-    let truth = VisibilityImage::of_scene(&scene, 0, size, &|| ()).unwrap();
-    let variance = |samples: u32| {
-        let picture = |seed: u32| {
-            let set = [format!("samples={samples}"), format!("seed={seed}")];
-            let set = set.each_ref().map(String::as_str);
-            sized("ray-traced", &scene, &set, size).unwrap().visibility
-        };
-        let pictures: Vec<Vec<f32>> = (0..SEEDS).map(picture).collect();
-        let (mut found, mut binomial) = (0.0, 0.0);
-        for (k, v) in truth.values.iter().enumerate() {
-            if LightRegion::of(*v) != Some(LightRegion::Penumbra) {
-                continue;
-            }
-            let values = pictures.iter().map(|p| f64::from(p[k]));
-            let mean = values.clone().sum::<f64>() / f64::from(SEEDS);
-            let squares = values.map(|x| (x - mean) * (x - mean)).sum::<f64>();
-            found += squares / f64::from(SEEDS - 1);
-            binomial += v * (1.0 - v);
-        }
-        println!("{samples} rays: variance {:.4} of V(1-V)", found / binomial);
-        found / binomial
-    };
-    let [one, four, sixteen] = [1, 4, 16].map(variance);
-    assert!((one - 1.0).abs() < 0.15, "{one}");
-    assert!(four < 0.3 && sixteen < 0.08, "{four} {sixteen}");
-    let fall = four / sixteen;
-    assert!((5.5..11.5).contains(&fall), "8 is predicted: {fall}");
+    map_support::variance_falls_as_predicted("ray-traced", "samples", &[]);
 }
 
 /// Scenes with everything in them, and lights of every shape: the oracle, but for noise.

@@ -1,7 +1,7 @@
 //! PCF, PCSS and N shadow maps against closed forms and the exact oracle
 //! (docs/papers.md, baselines).
 
-use crate::map_support::{SIZE, by, centre_of, figure, plate_error, scene, sized, truth};
+use crate::map_support::{self, SIZE, by, centre_of, figure, plate_error, scene, truth};
 use glam::DVec3;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
@@ -95,39 +95,11 @@ fn one_fixed_kernel_fails_where_another_width_is_needed() {
 /// the cells that an edge crosses vary: √N of N.
 #[test]
 fn variance_falls_as_predicted() {
-    const SEEDS: u32 = 24;
-    let size = [40, 28];
-    let scene = scene("parallel-plates");
-    let truth = VisibilityImage::of_scene(&scene, 0, size, &|| ()).unwrap();
-    let variance = |maps: u32| {
-        let picture = |seed: u32| {
-            let set = ["pattern=stratified", "map-size=128"].map(str::to_owned);
-            let more = [format!("maps={maps}"), format!("seed={seed}")];
-            let all: Vec<&str> = set.iter().chain(&more).map(String::as_str).collect();
-            sized("shadow-maps-n", &scene, &all, size)
-                .unwrap()
-                .visibility
-        };
-        let pictures: Vec<Vec<f32>> = (0..SEEDS).map(picture).collect();
-        let (mut found, mut binomial) = (0.0, 0.0);
-        for (k, v) in truth.values.iter().enumerate() {
-            if LightRegion::of(*v) != Some(LightRegion::Penumbra) {
-                continue;
-            }
-            let values = pictures.iter().map(|p| f64::from(p[k]));
-            let mean = values.clone().sum::<f64>() / f64::from(SEEDS);
-            let squares = values.map(|x| (x - mean) * (x - mean)).sum::<f64>();
-            found += squares / f64::from(SEEDS - 1);
-            binomial += v * (1.0 - v);
-        }
-        println!("{maps} maps: variance {:.4} of V(1-V)", found / binomial);
-        found / binomial
-    };
-    let [one, four, sixteen] = [1, 4, 16].map(variance);
-    assert!((one - 1.0).abs() < 0.15, "{one}");
-    assert!(four < 0.3 && sixteen < 0.08, "{four} {sixteen}");
-    let fall = four / sixteen;
-    assert!((5.5..11.5).contains(&fall), "8 is predicted: {fall}");
+    map_support::variance_falls_as_predicted(
+        "shadow-maps-n",
+        "maps",
+        &["pattern=stratified", "map-size=128"],
+    );
 }
 
 /// Errors on scenes with everything in them, for whoever reads the output; bounds

@@ -20,7 +20,7 @@ use self::counting::Counting;
 use self::planes::{Receiver, receivers};
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
-use crate::parts::light_samples::{Pattern, light_points};
+use crate::parts::light_samples::{JITTER_SEED, Pattern, light_points};
 use crate::parts::maps::light_view::{Surroundings, ViewedLight};
 use crate::parts::passes::{LitTest, View};
 use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
@@ -39,14 +39,6 @@ const SAMPLES: Param<u32> = Param::<u32>::square(
     64,
     [1, 1024],
     "points of the light, a square number from 1 to 1024; the papers have 64 to 256",
-)
-.when(Condition::Lights(LightFact::Extended));
-
-const SEED: Param<u64> = Param::<u64>::whole(
-    "seed",
-    1,
-    [0, u32::MAX as u64],
-    "of the jitter of the light's points",
 )
 .when(Condition::Lights(LightFact::Extended));
 
@@ -72,7 +64,7 @@ impl Settings {
     fn read(params: &Params) -> Result<Self, TechniqueError> {
         Ok(Self {
             side: params.get(&SAMPLES)?.isqrt(),
-            seed: params.get(&SEED)?,
+            seed: params.get(&JITTER_SEED)?,
             size: params.get(&MAP_SIZE)?,
             frame: FrameSettings::read(params)?,
         })
@@ -90,7 +82,7 @@ impl Technique for HeckbertHerf {
 
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
-            &[SAMPLES.info, SEED.info, MAP_SIZE.info],
+            &[SAMPLES.info, JITTER_SEED.info, MAP_SIZE.info],
             FrameSettings::PARAMS
         )
     }

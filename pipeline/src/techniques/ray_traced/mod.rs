@@ -22,7 +22,7 @@ use gnomon_shaders::transform::FullScreen;
 use self::textures::CasterTextures;
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
-use crate::parts::light_samples::{Pattern, light_points};
+use crate::parts::light_samples::{JITTER_SEED, Pattern, light_points};
 use crate::parts::maps::light_view::ViewedLight;
 use crate::parts::passes::{LitTest, View};
 use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
@@ -42,14 +42,6 @@ const SAMPLES: Param<u32> = Param::<u32>::square(
     64,
     [1, 1024],
     "rays for each pixel, a square number from 1 to 1024",
-)
-.when(Condition::Lights(LightFact::Extended));
-
-const SEED: Param<u64> = Param::<u64>::whole(
-    "seed",
-    1,
-    [0, u32::MAX as u64],
-    "of the jitter of the light's points",
 )
 .when(Condition::Lights(LightFact::Extended));
 
@@ -90,7 +82,7 @@ impl Settings {
     fn read(params: &Params) -> Result<Self, TechniqueError> {
         Ok(Self {
             side: params.get(&SAMPLES)?.isqrt(),
-            seed: params.get(&SEED)?,
+            seed: params.get(&JITTER_SEED)?,
             block: params.get(&BLOCK)?,
             bias: params.get(&BIAS)?,
             frame: FrameSettings::read(params)?,
@@ -109,7 +101,7 @@ impl Technique for RayTraced {
 
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
-            &[SAMPLES.info, SEED.info, BLOCK.info, BIAS.info],
+            &[SAMPLES.info, JITTER_SEED.info, BLOCK.info, BIAS.info],
             FrameSettings::PARAMS
         )
     }

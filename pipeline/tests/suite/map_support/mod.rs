@@ -6,7 +6,7 @@ use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::truth::metrics::visibility::{ErrorSummary, VisibilityError};
-use gnomon_pipeline::truth::oracle::area::VisibilityImage;
+use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
 use gnomon_pipeline::world::light::{HardLight, Light};
 use gnomon_pipeline::world::mesh::Shading;
 use gnomon_pipeline::world::plates::ParallelPlates;
@@ -128,4 +128,45 @@ pub(crate) fn plates(d: f64) -> (Scene, ParallelPlates) {
     let mut camera = Camera::look_at([0.02, -away, 0.01], [0.0, 0.0, 0.0]);
     camera.up = DVec3::Z;
     (Scene::new(camera, vec![light], objects), plates)
+}
+
+/// T: variance over seeds, in penumbrae of `parallel-plates`; `count` is the parameter of
+/// how many samples there are, `set` the other settings. One point sees the light or not:
+/// V(1 - V). N jittered ones, each in its cell, have less, falling as N^-3/2, for only
+/// the cells that an edge crosses vary: √N of N.
+pub(crate) fn variance_falls_as_predicted(name: &str, count: &str, set: &[&str]) {
+    const SEEDS: u32 = 24;
+    let size = [40, 28];
+    let scene = scene("parallel-plates");
+    let truth = VisibilityImage::of_scene(&scene, 0, size, &|| ()).unwrap();
+    let variance = |samples: u32| {
+        let picture = |seed: u32| {
+            let more = [format!("{count}={samples}"), format!("seed={seed}")];
+            let all = set.iter().copied().chain(more.iter().map(String::as_str));
+            let all: Vec<&str> = all.collect();
+            sized(name, &scene, &all, size).unwrap().visibility
+        };
+        let pictures: Vec<Vec<f32>> = (0..SEEDS).map(picture).collect();
+        let (mut found, mut binomial) = (0.0, 0.0);
+        for (k, v) in truth.values.iter().enumerate() {
+            if LightRegion::of(*v) != Some(LightRegion::Penumbra) {
+                continue;
+            }
+            let values = pictures.iter().map(|p| f64::from(p[k]));
+            let mean = values.clone().sum::<f64>() / f64::from(SEEDS);
+            let squares = values.map(|x| (x - mean) * (x - mean)).sum::<f64>();
+            found += squares / f64::from(SEEDS - 1);
+            binomial += v * (1.0 - v);
+        }
+        println!(
+            "{samples} {count}: variance {:.4} of V(1-V)",
+            found / binomial
+        );
+        found / binomial
+    };
+    let [one, four, sixteen] = [1, 4, 16].map(variance);
+    assert!((one - 1.0).abs() < 0.15, "{one}");
+    assert!(four < 0.3 && sixteen < 0.08, "{four} {sixteen}");
+    let fall = four / sixteen;
+    assert!((5.5..11.5).contains(&fall), "8 is predicted: {fall}");
 }

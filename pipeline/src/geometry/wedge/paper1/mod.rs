@@ -22,11 +22,15 @@
 
 mod intensity;
 mod link;
+mod parts;
 mod shape;
 
 pub use intensity::{SideDirections, smoothed};
 pub use link::{LinkedSettings, LinkedStatistics, MOST_EXTRA, link};
+pub use parts::{Cut, WedgeParts};
 pub use shape::Overlap;
+
+pub(crate) use parts::between_rays;
 
 use glam::DVec3;
 

@@ -4,6 +4,7 @@ pub(crate) mod axes;
 pub(crate) mod casters;
 pub(crate) mod hard;
 pub(crate) mod light;
+pub(crate) mod reach;
 pub(crate) mod report;
 pub(crate) mod screen;
 pub(crate) mod shape;

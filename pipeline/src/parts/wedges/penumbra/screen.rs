@@ -5,6 +5,7 @@ use glam::{DMat4, DVec3};
 use gnomon_shaders::penumbra::crossing::SideIntensity;
 use gnomon_shaders::penumbra::intensity::{IntensityRates, Interpolation};
 use gnomon_shaders::penumbra::plane::ScreenPlane;
+use gnomon_shaders::penumbra::tiles::WedgePlanes;
 
 use crate::geometry::wedge::Plane;
 use crate::geometry::wedge::paper1::LinkedWedge;
@@ -51,6 +52,26 @@ impl Screen {
     /// Front, back and side planes of a wedge.
     pub(crate) fn wedge(&self, view: &View, wedge: &LinkedWedge) -> [ScreenPlane; 4] {
         wedge.planes().map(|p| self.plane(view, &p))
+    }
+
+    /// The planes of a wedge as pixels and tiles are tested against them.
+    pub(crate) fn wedge_planes(&self, view: &View, wedge: &LinkedWedge) -> WedgePlanes {
+        let planes = self.wedge(view, wedge);
+        WedgePlanes {
+            planes,
+            front_margin: self.depth_margin(&planes[0]),
+        }
+    }
+
+    /// By how much, as a value of the plane, the depth of its rasterised faces may be off:
+    /// vertices are snapped to 1/256 pixel, depth and coefficients are rounded.
+    pub(crate) fn depth_margin(&self, plane: &ScreenPlane) -> f32 {
+        const SNAPPING: f64 = 1.0 / 256.0;
+        const ROUNDING: f64 = 1e-5;
+        let [a, b, c, d] = plane.0.map(|v| f64::from(v).abs());
+        let largest = [a * self.size[0], b * self.size[1], c, d];
+        let largest = largest.into_iter().fold(0.0, f64::max);
+        ((a + b) * SNAPPING + largest * ROUNDING) as f32
     }
 
     /// For intensities in the side planes of a wedge. Both wedges at a joint get

@@ -14,7 +14,7 @@ use glam::{DVec3, DVec4};
 use super::light::LightSphere;
 use super::report::LinkedReport;
 use crate::geometry::wedge::Plane;
-use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge, link};
+use crate::geometry::wedge::paper1::{Cut, LinkedSettings, LinkedWedge, between_rays, link};
 use crate::geometry::winding;
 use crate::world::mesh::Mesh;
 
@@ -25,6 +25,8 @@ pub(crate) type Triangle = [DVec4; 3];
 pub(crate) struct SoftVolume {
     /// In the order of the silhouette's loops.
     pub(crate) wedges: Vec<LinkedWedge>,
+    /// Where the two front rays of each wedge are cut, for [`LinkedWedge::parts`].
+    pub(crate) cuts: Vec<[Vec<Cut>; 2]>,
     /// Boundary of the umbra where there is no wedge.
     pub(crate) gaps: Vec<Gap>,
     /// Light-facing triangles of the caster.
@@ -49,7 +51,8 @@ pub(crate) struct Gap {
 struct Side {
     near: [DVec3; 2],
     far: [DVec3; 2],
-    has_wedge: bool,
+    /// Index of its wedge among the loop's.
+    wedge: Option<usize>,
 }
 
 impl SoftVolume {
@@ -62,6 +65,7 @@ impl SoftVolume {
     ) -> Self {
         let mut volume = Self {
             wedges: Vec::new(),
+            cuts: Vec::new(),
             gaps: Vec::new(),
             cap,
             patches: Vec::new(),
@@ -100,9 +104,17 @@ impl SoftVolume {
         } else {
             chained(&wedges)
         };
-        met.gaps += sides.iter().filter(|s| !s.has_wedge).count() as u64;
-        let gaps = sides.iter().filter(|s| !s.has_wedge);
-        self.gaps.extend(gaps.filter_map(Side::gap));
+        let cuts = cuts(&sides, &wedges);
+        let n = sides.len();
+        for (k, side) in sides.iter().enumerate() {
+            let cuts = [&cuts[(k + n - 1) % n], &cuts[k]];
+            if side.wedge.is_some() {
+                self.cuts.push(cuts.map(Clone::clone));
+            } else {
+                met.gaps += 1;
+                self.gaps.extend(side.gap(cuts));
+            }
+        }
         self.patches.extend(patches(points, &sides));
         self.bottom.extend(bottom(points, sphere.centre, &sides));
         self.wedges.extend(wedges);
@@ -131,21 +143,39 @@ impl SoftVolume {
 }
 
 impl Side {
-    fn gap(&self) -> Option<Gap> {
+    fn gap(&self, cuts: [&Vec<Cut>; 2]) -> Option<Gap> {
         let [[a, b], [r, s]] = [self.near, self.far];
-        let triangles: Vec<Triangle> = [
-            [b.extend(1.0), a.extend(1.0), r.extend(0.0)],
-            [b.extend(1.0), r.extend(0.0), s.extend(0.0)],
-        ]
-        .into_iter()
-        .filter(|[x, y, z]| x != y && y != z && z != x)
-        .collect();
+        let triangles = between_rays(self.near, self.far, cuts.map(Vec::as_slice));
         let plane = Plane::spanned(a, b - a, r)
             .or_else(|| Plane::spanned(a, b - a, s))
             .or_else(|| Plane::spanned(a, r, s));
         // Without plane it has no area from anywhere.
         plane.map(|plane| Gap { triangles, plane })
     }
+}
+
+/// Where front faces end on the rays that sides share; entry k is the ray between side k
+/// and the next.
+fn cuts(sides: &[Side], wedges: &[LinkedWedge]) -> Vec<Vec<Cut>> {
+    let n = sides.len();
+    let mut all = vec![Vec::new(); n];
+    for (k, side) in sides.iter().enumerate() {
+        let Some(tip) = side.wedge.and_then(|w| wedges[w].front_tip()) else {
+            continue;
+        };
+        for (joint, end) in [((k + n - 1) % n, 0), (k, 1)] {
+            let at = (tip - side.near[end]).dot(side.far[end]);
+            // A turn at a vertex may end where it begins.
+            if tip != side.near[end] {
+                all[joint].push(Cut { at, point: tip });
+            }
+        }
+    }
+    for list in &mut all {
+        list.sort_by(|a, b| a.at.total_cmp(&b.at));
+        list.dedup_by(|a, b| a.point == b.point);
+    }
+    all
 }
 
 /// The sides of the hard shadow volume of a loop, where there are no wedges.
@@ -155,7 +185,7 @@ fn hard_sides(points: &[DVec3], centre: DVec3) -> Vec<Side> {
         .map(|k| Side {
             near: [points[k], next(k)],
             far: [points[k], next(k)].map(|p| p - centre),
-            has_wedge: false,
+            wedge: None,
         })
         .filter(|side| side.near[0] != side.near[1])
         .collect()
@@ -169,13 +199,13 @@ fn chained(wedges: &[LinkedWedge]) -> Vec<Side> {
         sides.push(Side {
             near: wedge.edge,
             far: wedge.front_rays,
-            has_wedge: true,
+            wedge: Some(k),
         });
         let next = &wedges[(k + 1) % wedges.len()];
         let gap = Side {
             near: [wedge.edge[1], next.edge[0]],
             far: [wedge.front_rays[1], next.front_rays[0]],
-            has_wedge: false,
+            wedge: None,
         };
         if gap.near[0] != gap.near[1] || gap.far[0] != gap.far[1] {
             sides.push(gap);

@@ -12,7 +12,7 @@
 //! Counted are triangles, as a rasteriser meets them: a wedge whose two visible
 //! faces share a tile tests it twice.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gnomon_raster::{
     AccessBatch, AccessObserver, Counters, Gpu, GpuConfig, SubmitReport, Subresource, Wants,
@@ -30,6 +30,8 @@ use crate::world::scene::Scene;
 pub struct TileTraffic {
     /// Side of a tile in pixels.
     pub tile: u32,
+    /// Tiles that some triangle of a wedge meets whose tiles may be culled.
+    pub tiles_met: u64,
     /// Pairs of triangle and tile that were tested; 0 without culling.
     pub tested: u64,
     /// Of these, out of reach for all that the triangle adds.
@@ -160,6 +162,7 @@ impl Covered {
             }
         }
         let mut traffic = TileTraffic::default();
+        let mut met = BTreeSet::new();
         for ((triangle, tile), count) in pixels {
             let model = &draws[triangle.0 as usize].model;
             let space = bounds.of(tile, &model.tiles);
@@ -167,6 +170,7 @@ impl Covered {
             traffic.fragments += count;
             if model.tiles.culling != Culling::None {
                 traffic.tested += 1;
+                met.insert(tile);
                 let quick = space.is_some_and(|t| beyond_any(&model.tiles.range, &t));
                 traffic.quickly_rejected += u64::from(quick);
                 traffic.culled += u64::from(class == TileClass::Culled);
@@ -180,6 +184,7 @@ impl Covered {
                 traffic.penumbra_depth_reads += if penumbra { count } else { 0 };
             }
         }
+        traffic.tiles_met = met.len() as u64;
         traffic
     }
 }
@@ -280,11 +285,14 @@ fn classify(model: &WedgeModel, tile: Option<[[f32; 2]; 3]>) -> TileClass {
     } else {
         front[0] >= margin
     };
+    let bottom = model.wedge.bottom.map(|p| p.range_in(&tile));
+    let [below, partly] = [1, 0].map(|k| bottom.is_some_and(|b| b[k] < 0.0));
     let by_planes = model.tiles.outside == OutsideTest::Planes
-        && (front[1] < -margin || back[1] < 0.0 || first[1] < 0.0 || second[1] <= 0.0);
+        && (below || front[1] < -margin || back[1] < 0.0 || first[1] < 0.0 || second[1] <= 0.0);
     let penumbra_culled =
         by_planes || beyond_any(&model.tiles.range, &tile) || beyond_any(&model.tiles.axes, &tile);
-    let inside = front[0] >= margin && back[0] >= 0.0 && first[0] >= 0.0 && second[0] > 0.0;
+    let inside =
+        !partly && front[0] >= margin && back[0] >= 0.0 && first[0] >= 0.0 && second[0] > 0.0;
     let culled = match model.adds {
         Adds::Umbra => umbra_culled,
         Adds::Penumbra => penumbra_culled,

@@ -310,9 +310,10 @@ fn restructuring_changes_no_intensity() {
         ("columns", 0.1),
         ("spheres", 0.15),
         ("adversarial-eye-in-shadow", 0.3),
+        // So large that side planes meet above the floor.
+        ("creature", 0.4),
+        ("columns", 0.5642),
     ] {
-        // Not so large that side planes meet before the floor, beyond which what a
-        // ray gains has no counterpart.
         let scene = with_sphere(scene(name), radius);
         let first = picture(&scene, ORIGINAL, &[]).visibility;
         let second = picture(&scene, RESTRUCTURED, &[]).visibility;
@@ -328,6 +329,101 @@ fn restructuring_changes_no_intensity() {
             let count = apart(&lit, &second);
             assert!(count > 500, "negative control: {count}");
         }
+    }
+}
+
+/// The three forms of the first paper agree where side planes do not meet; where they
+/// do, evaluating them leaves streaks, and leaving them out does not.
+#[test]
+fn side_planes_that_cancel_may_be_left_out() {
+    let forms = ["cancel", "evaluate", "naive"].map(|f| format!("side-planes={f}"));
+    let of = |scene: &Scene| {
+        forms
+            .each_ref()
+            .map(|f| picture(scene, ORIGINAL, &[f]).visibility)
+    };
+    let apart = |a: &[f32], b: &[f32], steps: f32| {
+        let off = |(a, b): &(&f32, &f32)| (*a - *b).abs() > steps / 255.0;
+        a.iter().zip(b).filter(off).count()
+    };
+    let [cancel, evaluate, naive] = of(&with_sphere(scene("cylinder"), 0.5));
+    let few = cancel.len() / 1000;
+    let [e, n] = [apart(&cancel, &evaluate, 1.5), apart(&cancel, &naive, 2.5)];
+    assert!(e <= few && n <= few, "{e}, {n}");
+    assert!(naive != evaluate, "neighbours round apart");
+    let large = with_sphere(scene("creature"), 0.4);
+    let [cancel, evaluate, _] = of(&large);
+    let second = picture(&large, RESTRUCTURED, &[]).visibility;
+    let streaks = apart(&evaluate, &second, 1.5);
+    assert!(
+        streaks > 20 * (apart(&cancel, &second, 1.5) + 1),
+        "{streaks}"
+    );
+}
+
+/// zmax throws away blocks, and no bit changes.
+#[test]
+fn zmax_culls_faces_behind_all_surfaces() {
+    for (name, radius) in [("columns", 0.3), ("creature", 0.4), ("spheres", 0.15)] {
+        let scene = with_sphere(scene(name), radius);
+        let none = buffer(&scene, ORIGINAL, &["culling=none"]);
+        assert!(
+            none == buffer(&scene, ORIGINAL, &["culling=zmax"]),
+            "{name}"
+        );
+        let of = |set: &[&str]| {
+            let drawn = picture(&scene, ORIGINAL, set);
+            let pass = drawn.report.passes.iter().find(|p| p.label == "wedges");
+            pass.unwrap().totals()
+        };
+        let [without, with] = [of(&["culling=none"]), of(&["culling=zmax"])];
+        assert_eq!(without.tiles.tested, 0, "{name}");
+        let [all, left] = [without, with].map(|c| c.fragment_shader_invocations);
+        eprintln!(
+            "{name}: {left} of {all} invocations, tiles {:?}",
+            with.tiles
+        );
+        assert!(
+            with.tiles.culled * 10 > with.tiles.tested,
+            "{name}: {:?}",
+            with.tiles
+        );
+        assert!(left * 10 < all * 9, "{name}: {left} of {all}");
+    }
+}
+
+/// A shadow that ends behind everything is the endless one; one that ends before the
+/// floor leaves it lit. Passes, culling and method change nothing of either.
+#[test]
+fn shadows_may_end() {
+    for name in ["columns", "creature", "cylinder"] {
+        let scene = scene(name);
+        let endless = buffer(&scene, RESTRUCTURED, &[]);
+        let long = buffer(&scene, RESTRUCTURED, &["wedge-length=40"]);
+        let other = differing(&long, &endless);
+        assert!(other <= 4, "{name}: {other} differ");
+        let short = ["wedge-length=0.2", "method=zpass"];
+        let reference = buffer(&scene, RESTRUCTURED, &short);
+        let dark = |b: &[i16]| b.iter().filter(|v| **v < 255).count();
+        let [few, all] = [dark(&reference), dark(&endless)];
+        assert!(few * 10 < all * 9, "{name}: {few} of {all} dark");
+        for way in [
+            ["passes=three", "culling=zminmax"],
+            ["passes=single", "culling=none"],
+            ["passes=single", "culling=zmax"],
+            ["tile=4", "separating-axis=full"],
+            ["tile=16", "separating-axis=range"],
+        ] {
+            let other = buffer(&scene, RESTRUCTURED, &[&way[..], &short[..]].concat());
+            let count = differing(&other, &reference);
+            assert!(count == 0, "{name}: {way:?}: {count} differ");
+        }
+        let fail = buffer(&scene, RESTRUCTURED, &["wedge-length=0.2", "method=zfail"]);
+        let apart = fail.iter().zip(&reference).filter(|(a, b)| {
+            let [a, b] = [a, b].map(|v| (**v).clamp(0, 255));
+            a != b
+        });
+        assert!(apart.count() <= 8, "{name}");
     }
 }
 

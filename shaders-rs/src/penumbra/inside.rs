@@ -85,7 +85,12 @@ impl FragmentShader for WedgeInside {
         let (point, surface) = at_depth(l, f, depth);
         let values = Values::new(&self.wedge.planes, &point);
         let tested = values.inside(-self.wedge.front_margin) & self.of_front(l, f, depth);
-        let inside = (tested | accepted) & surface & !culled;
+        let below = self.wedge.below(
+            l,
+            #[inline(always)]
+            |b| b.at(&point),
+        );
+        let inside = ((tested & !below) | accepted) & surface & !culled;
         if !counted {
             f.discard(!inside);
         }
@@ -107,8 +112,8 @@ impl WedgeInside {
 }
 
 /// Plane values of a surface point.
-struct Values<L: Lanes> {
-    front: F32<L>,
+pub(super) struct Values<L: Lanes> {
+    pub(super) front: F32<L>,
     back: F32<L>,
     first: F32<L>,
     second: F32<L>,
@@ -116,7 +121,7 @@ struct Values<L: Lanes> {
 
 impl<L: Lanes> Values<L> {
     #[inline(always)]
-    fn new([front, back, first, second]: &[ScreenPlane; 4], p: &ScreenPoint<L>) -> Self {
+    pub(super) fn new([front, back, first, second]: &[ScreenPlane; 4], p: &ScreenPoint<L>) -> Self {
         Self {
             front: front.at(p),
             back: back.at(p),
@@ -127,7 +132,7 @@ impl<L: Lanes> Values<L> {
 
     /// Inside of the planes; of the front plane from `front` on.
     #[inline(always)]
-    fn inside(&self, front: f32) -> Mask<L> {
+    pub(super) fn inside(&self, front: f32) -> Mask<L> {
         let l = self.front.lanes();
         let zero = F32::splat(l, 0.0);
         self.front.ge(F32::splat(l, front))
@@ -138,7 +143,7 @@ impl<L: Lanes> Values<L> {
 
     /// 255 times the intensity, rounded; meaningful inside.
     #[inline(always)]
-    fn light(&self, rates: &IntensityRates) -> F32<L> {
+    pub(super) fn light(&self, rates: &IntensityRates) -> F32<L> {
         let zero = F32::splat(self.front.lanes(), 0.0);
         let s = rates.intensity(&Distances {
             front: self.front.max(zero),

@@ -8,7 +8,8 @@
 //!
 //! * [`plane`]: plane equations over pixel and depth, and their extremes in a box
 //! * [`intensity`]: the interpolated intensity of a point in a wedge
-//! * [`crossing`]: paper I, what a ray gains between entering and leaving
+//! * [`face`]: paper I, what a ray gains by a face of a wedge, as it was implemented
+//! * [`crossing`]: paper I, what a ray gains between entering and leaving, as it is defined
 //! * [`inside`]: paper II, the penumbra apart from the umbra
 //! * [`tiles`]: paper II, which tiles a wedge reaches, tested once each
 //! * [`buffers`]: smallest and largest depth of tiles; stencil counts to intensities
@@ -17,6 +18,7 @@
 
 pub mod buffers;
 pub mod crossing;
+pub mod face;
 pub mod inside;
 pub mod intensity;
 pub mod plane;

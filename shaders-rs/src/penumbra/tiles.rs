@@ -69,10 +69,13 @@ pub struct WedgePlanes {
     /// of the rasterised plane still has it inside: vertices are snapped, and depth is
     /// rounded.
     pub front_margin: f32,
+    /// Where the wedge ends, positive inside, if it does.
+    pub bottom: Option<ScreenPlane>,
 }
 uniforms!(WedgePlanes {
     planes,
-    front_margin
+    front_margin,
+    bottom
 });
 
 /// What a tile's test says, as it is stored.
@@ -159,6 +162,11 @@ impl WedgePlanes {
             | back.greatest(tile).lt(zero)
             | first.greatest(tile).lt(zero)
             | second.greatest(tile).le(zero)
+            | self.below(
+                l,
+                #[inline(always)]
+                |b| b.greatest(tile),
+            )
     }
 
     /// Boxes that lie inside of all planes, whatever the depth test of the front plane
@@ -171,6 +179,20 @@ impl WedgePlanes {
             & back.least(tile).ge(zero)
             & first.least(tile).ge(zero)
             & second.least(tile).gt(zero)
+            & !self.below(
+                l,
+                #[inline(always)]
+                |b| b.least(tile),
+            )
+    }
+
+    /// Where a value of the bottom is negative; nowhere without one.
+    #[inline(always)]
+    pub(super) fn below<L: Lanes>(&self, l: L, value: impl Fn(&ScreenPlane) -> F32<L>) -> Mask<L> {
+        match &self.bottom {
+            Some(bottom) => value(bottom).lt(F32::splat(l, 0.0)),
+            None => Mask::splat(l, false),
+        }
     }
 }
 

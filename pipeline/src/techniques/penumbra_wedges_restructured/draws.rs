@@ -58,18 +58,24 @@ impl InsideDraws<'_> {
         let warning = light::point_warning(turn.number, points.len());
         turn.notes.warnings.extend(warning);
         for caster in others {
-            let volume = caster.soft_volume(sphere, &settings, &mut report);
+            let volume = caster.soft_volume(sphere, &settings, self.choices.length, &mut report);
             let method = self
                 .choices
                 .forced
                 .unwrap_or_else(|| choose(turn.scene, self.size, caster, &volume));
+            self.caps(view, caster, &volume, method, draws);
             if method == Method::DepthFail {
-                self.caps(view, caster, &volume, draws);
                 draws.start -= FULL * volume.all_around as f32;
             }
-            for (wedge, cuts) in volume.wedges.iter().zip(&volume.cuts) {
-                let shape = WedgeShape::new(view, wedge, cuts);
-                self.wedge(view, &caster.object.name, (wedge, &shape), method, draws);
+            for (k, wedge) in volume.wedges.iter().enumerate() {
+                let drawn = Drawn {
+                    label: &caster.object.name,
+                    wedge,
+                    planes: self.screen.wedge_planes(view, wedge, &volume.ends[k]),
+                    shape: WedgeShape::new(view, volume.parts(k)),
+                    method,
+                };
+                self.wedge(view, &drawn, draws);
             }
             for gap in &volume.gaps {
                 let plane = self.screen.plane(view, &gap.plane);
@@ -77,6 +83,7 @@ impl InsideDraws<'_> {
                     wedge: WedgePlanes {
                         planes: [plane; 4],
                         front_margin: self.screen.depth_margin(&plane),
+                        bottom: None,
                     },
                     adds: Adds::Umbra,
                     depth_fail: method == Method::DepthFail,
@@ -122,33 +129,28 @@ impl InsideDraws<'_> {
         turn.notes.casters.push(used);
     }
 
-    /// Top, patches and bottom of a volume, for z-fail.
+    /// What closes a volume besides its sides: for z-fail top, patches and bottom; for
+    /// z-pass the bottom where it is not at infinity.
     fn caps(
         &self,
         view: &View,
         caster: &Examined<'_>,
         volume: &SoftVolume,
+        method: Method,
         draws: &mut LightDraws,
     ) {
-        let mesh = &caster.object.mesh;
-        // The caster's own vertices, as the scene draws them: equal depth.
-        let points = mesh.positions().iter().map(|p| view.point(*p));
-        let top = Faces {
-            vertices: Arc::new(VertexBuffer {
-                data: points.flat_map(|[x, y, z]| [x, y, z, 1.0]).collect(),
-                stride: 4,
-            }),
-            indices: passes::index_buffer(&volume.cap),
-        };
-        let patches = shape::triangles(view, &volume.patches);
-        let bottom = shape::triangles(view, &volume.bottom);
+        let fail = method == Method::DepthFail;
+        let ends = volume.ends_somewhere;
+        let bottom = (fail || ends).then(|| shape::triangles(view, &volume.bottom));
+        let top = fail.then(|| top(view, caster, volume));
+        let patches = fail.then(|| shape::triangles(view, &volume.patches));
         for (label, faces) in [("top", top), ("patches", patches), ("bottom", bottom)] {
-            if faces.indices.indices().is_empty() {
+            let Some(faces) = faces.filter(|f| !f.indices.indices().is_empty()) else {
                 continue;
-            }
-            let mut pipeline = hard::boundary_pipeline(label, view, Method::DepthFail);
+            };
+            let mut pipeline = hard::boundary_pipeline(label, view, method);
             if self.choices.three {
-                pipeline = into_stencil(pipeline, Method::DepthFail);
+                pipeline = into_stencil(pipeline, method);
             }
             draws.tested.push(faces.draw(label, pipeline, Vec::new()));
         }
@@ -156,27 +158,26 @@ impl InsideDraws<'_> {
 
     /// The wedge by its faces on the front plane's side of the eye: which they are does
     /// not depend on the method, since both cover the same pixels.
-    fn wedge(
-        &self,
-        view: &View,
-        label: &str,
-        (wedge, shape): (&LinkedWedge, &WedgeShape),
-        method: Method,
-        draws: &mut LightDraws,
-    ) {
-        let planes = self.screen.wedge_planes(view, wedge);
+    fn wedge(&self, view: &View, drawn: &Drawn<'_>, draws: &mut LightDraws) {
+        let Drawn {
+            label,
+            wedge,
+            planes,
+            shape,
+            method,
+        } = drawn;
         let leaves = planes.planes[0].eye_is_inside();
-        let (drawn, other) = match leaves {
+        let (facing, other) = match leaves {
             false => (CullMode::Back, CullMode::Front),
             true => (CullMode::Front, CullMode::Back),
         };
         let model = |adds| WedgeModel {
-            wedge: planes,
+            wedge: *planes,
             adds,
-            depth_fail: method == Method::DepthFail,
-            tiles: self.tests(view, wedge),
+            depth_fail: *method == Method::DepthFail,
+            tiles: self.tests(view, wedge, shape),
         };
-        let both = !self.choices.three && leaves == (method == Method::DepthFail);
+        let both = !self.choices.three && leaves == (*method == Method::DepthFail);
         let boundary = (&shape.front, if both { other } else { CullMode::None });
         self.umbra(view, label, boundary, &model(Adds::Umbra), draws);
         if let Some(beyond) = &shape.beyond {
@@ -197,7 +198,7 @@ impl InsideDraws<'_> {
             (&shape.others, FrontTest::Implied),
         ] {
             let shader = WedgeInside {
-                wedge: planes,
+                wedge: *planes,
                 rates: screen::rates(wedge, self.choices.penumbra.interpolation),
                 front,
                 classes,
@@ -206,7 +207,7 @@ impl InsideDraws<'_> {
                 FrontTest::Counted => Adds::Both,
                 _ => Adds::Penumbra,
             };
-            let pipeline = penumbra_pipeline(view, drawn, method, &shader);
+            let pipeline = penumbra_pipeline(view, facing, *method, &shader);
             let draw = faces.draw(label, pipeline, self.bindings());
             draws.wedges().push((draw, Some(model(adds))));
         }
@@ -252,11 +253,12 @@ impl InsideDraws<'_> {
     }
 
     /// What tiles are tested against for a wedge.
-    fn tests(&self, view: &View, wedge: &LinkedWedge) -> TileTest {
+    fn tests(&self, view: &View, wedge: &LinkedWedge, shape: &WedgeShape) -> TileTest {
         let mut tiles = self.choices.tiles.clone();
         let wanted = self.choices.axes;
         if wanted.range {
-            tiles.range = axes::of_depth(view, wedge, self.size);
+            let vertices = shape.whole.iter().flatten().copied();
+            tiles.range = axes::of_depth(view, vertices, self.size);
         }
         if wanted.edges {
             tiles.axes = axes::of_edges(&self.screen, view, wedge, self.size);
@@ -290,6 +292,33 @@ impl InsideDraws<'_> {
 
     fn bindings(&self) -> Vec<TextureBinding> {
         self.inputs.iter().map(|&t| binding(t)).collect()
+    }
+}
+
+/// A wedge that is drawn.
+struct Drawn<'a> {
+    label: &'a str,
+    wedge: &'a LinkedWedge,
+    planes: WedgePlanes,
+    shape: WedgeShape,
+    method: Method,
+}
+
+/// The light-facing triangles of a caster.
+fn top(view: &View, caster: &Examined<'_>, volume: &SoftVolume) -> Faces {
+    // The caster's own vertices, as the scene draws them: equal depth.
+    let points = caster
+        .object
+        .mesh
+        .positions()
+        .iter()
+        .map(|p| view.point(*p));
+    Faces {
+        vertices: Arc::new(VertexBuffer {
+            data: points.flat_map(|[x, y, z]| [x, y, z, 1.0]).collect(),
+            stride: 4,
+        }),
+        indices: passes::index_buffer(&volume.cap),
     }
 }
 

@@ -5,7 +5,7 @@ use gnomon_raster::{
     Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
 };
 use gnomon_shaders::penumbra::FULL;
-use gnomon_shaders::penumbra::buffers::{DepthCopy, StencilCounts, TileDepths};
+use gnomon_shaders::penumbra::buffers::{StencilCounts, TileDepths};
 use gnomon_shaders::penumbra::tiles::Culling;
 use gnomon_shaders::transform::FullScreen;
 
@@ -251,32 +251,6 @@ fn add_counts(texture: TextureId) -> Draw {
         color_targets: vec![ColorTargetState::ADDITIVE],
     };
     full_screen(pipeline, vec![binding(texture)])
-}
-
-/// The pass that copies depth, and the copy: wedges read depth while it is attached.
-pub(super) fn depth_copy(
-    targets: &Targets,
-    [width, height]: [u32; 2],
-    recording: &mut Recording,
-) -> Result<(Pass, TextureId), TechniqueError> {
-    let desc = TextureDescriptor::d2("depth copy", Format::R32Float, width, height);
-    let copy = recording.create(&desc)?;
-    let pipeline = RenderPipeline {
-        label: "depth copy".into(),
-        vertex: FullScreen.stage(),
-        fragment: Some(DepthCopy.stage()),
-        primitive: PrimitiveState::default(),
-        depth_stencil: DepthStencilState::default(),
-        color_targets: vec![ColorTargetState::OPAQUE],
-    };
-    let depth = vec![binding(targets.depth_texture())];
-    let pass = RenderPass {
-        label: "depth copy".into(),
-        color: vec![attachment(copy, LoadOp::DontCare)],
-        depth_stencil: None,
-        draws: vec![full_screen(pipeline, depth)],
-    };
-    Ok((Pass::new(PassRole::DepthCopy, pass), copy))
 }
 
 /// The pass that finds zmax, and zmin where it is wanted, of all tiles; and their

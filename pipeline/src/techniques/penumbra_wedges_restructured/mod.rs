@@ -39,6 +39,10 @@
 //! own blocks of 8x8. How often hardware would test a tile, once for each triangle, is
 //! counted by [`crate::measure::tile_traffic`]. Culling changes no bit of any buffer.
 //!
+//! `wedge-length` ends shadows in a plane that far behind each silhouette, square to the light's
+//! direction, as the paper's end; the bottom is then counted by z-pass too. What lies beyond
+//! is lit. Surfaces in that very plane may show single wrong pixels.
+//!
 //! Pixels without surface (depth 1) belong to no wedge and are left out of zmin and zmax:
 //! one pixel of sky would stretch its tile to infinity.
 //!
@@ -64,12 +68,13 @@ use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::parts::volumes::volume_draws::CountMethod;
+use crate::parts::wedges::penumbra::depth_copy;
 use crate::parts::wedges::penumbra::hard::Method;
 use crate::parts::wedges::penumbra::screen::Screen;
 use crate::parts::wedges::penumbra::{self, PenumbraSettings};
 use crate::technique::{
-    Capabilities, Choice, Condition, Frame, LightFact, Param, ParamInfo, Params, SceneWedges,
-    ShadowKind, Technique, TechniqueError, WedgeUse,
+    Capabilities, Choice, Condition, Decimals, Frame, LightFact, Param, ParamInfo, Params,
+    SceneWedges, ShadowKind, Technique, TechniqueError, WedgeUse,
 };
 use crate::world::scene::Scene;
 use crate::{choices, param_list};
@@ -145,6 +150,17 @@ const AXES: Param<SeparatingAxis> = Param::choice(
     Condition::Lights(LightFact::Extended),
 ]));
 
+const LENGTH: Param<Option<f64>> = Param::decimal_or(
+    &["infinite"],
+    "wedge-length",
+    Decimals {
+        low: 0.0,
+        with_low: true,
+    },
+    "how far behind its silhouette a shadow ends, in world units: what lies beyond is lit",
+)
+.when(Condition::Lights(LightFact::Extended));
+
 impl Technique for PenumbraWedgesRestructured {
     fn name(&self) -> &'static str {
         "penumbra-wedges-restructured"
@@ -156,7 +172,14 @@ impl Technique for PenumbraWedgesRestructured {
 
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
-            &[METHOD.info, PASSES.info, CULLING.info, TILE.info, AXES.info],
+            &[
+                METHOD.info,
+                PASSES.info,
+                CULLING.info,
+                TILE.info,
+                AXES.info,
+                LENGTH.info
+            ],
             PenumbraSettings::PARAMS,
             FrameSettings::PARAMS
         )
@@ -232,7 +255,7 @@ pub(crate) fn build(
     let choices = Choices::read(params, size)?;
     let casters = casters::examine(scene, choices.penumbra.open_casters)?;
     let mut frame = ShadowedFrame::new(scene, size, &choices.penumbra.frame)?.with_ambient();
-    let (pass, copy) = list::depth_copy(&frame.targets, size, &mut frame.recording)?;
+    let (pass, copy) = depth_copy::depth_copy(&frame.targets, size, &mut frame.recording)?;
     frame.push(pass);
     let (mut inputs, mut bounds) = (vec![copy], Vec::new());
     let mut atlas = None;
@@ -284,6 +307,8 @@ struct Choices {
     three: bool,
     tiles: TileTest,
     axes: Axes,
+    /// Where shadows end.
+    length: Option<f64>,
     penumbra: PenumbraSettings,
 }
 
@@ -312,6 +337,7 @@ impl Choices {
                 range: axes != SeparatingAxis::Faces,
                 edges: axes == SeparatingAxis::Full,
             },
+            length: params.get(&LENGTH)?,
             penumbra: PenumbraSettings::read(params)?,
         })
     }

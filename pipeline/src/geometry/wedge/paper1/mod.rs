@@ -20,11 +20,13 @@
 //!   quad ([`LinkedWedge::front_quad`]), since neighbours' quads meet along the
 //!   whole shared ray.
 
+mod end;
 mod intensity;
 mod link;
 mod parts;
 mod shape;
 
+pub use end::End;
 pub use intensity::{SideDirections, smoothed};
 pub use link::{LinkedSettings, LinkedStatistics, MOST_EXTRA, link};
 pub use parts::{Cut, WedgeParts};

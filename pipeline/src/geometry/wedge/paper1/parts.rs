@@ -6,7 +6,7 @@
 
 use glam::{DVec3, DVec4};
 
-use super::{LinkedWedge, Overlap};
+use super::{End, LinkedWedge, Overlap};
 
 /// A point of a front ray where the front face of a wedge ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,11 +48,11 @@ impl LinkedWedge {
         }
     }
 
-    /// The boundary in parts, its two front rays cut at `cuts`, in order; among them must
-    /// be the wedge's own [`LinkedWedge::front_tip`], if it has one.
-    pub fn parts(&self, cuts: [&[Cut]; 2]) -> WedgeParts {
-        let whole = [0, 1].map(|k| chain(self.edge[k], self.front_rays[k], cuts[k]));
-        let (near, beyond) = match self.front_tip() {
+    /// The boundary in parts up to `end`, its two front rays cut at `cuts`, in order; among
+    /// them must be the wedge's own [`LinkedWedge::front_tip`], if it has one there.
+    pub fn parts(&self, cuts: [&[Cut]; 2], end: &End) -> WedgeParts {
+        let whole = [0, 1].map(|k| chain(self.edge[k], self.front_rays[k], cuts[k], end));
+        let (near, beyond) = match self.front_tip().filter(|tip| end.holds(*tip)) {
             None => (whole, Vec::new()),
             Some(tip) => {
                 let [first, second] = whole.map(|c| split(c, tip));
@@ -62,26 +62,26 @@ impl LinkedWedge {
         WedgeParts {
             front: between(&near[0], &near[1]),
             beyond,
-            others: self.others(&near),
+            others: self.others(&near, end),
         }
     }
 
     /// Back, sides and far cap; `near` are the two sides of the front face.
-    fn others(&self, near: &[Vec<Link>; 2]) -> Vec<Triangle> {
-        let tips = (self.front_tip(), self.back_tip());
-        let far = |k: usize| match tips.1 {
+    fn others(&self, near: &[Vec<Link>; 2], end: &End) -> Vec<Triangle> {
+        let held = |tip: Option<DVec3>| tip.filter(|tip| end.holds(*tip));
+        let tips = [held(self.front_tip()), held(self.back_tip())];
+        let of_ray = |k: usize, rays: &[DVec3; 2]| end.of_ray(self.edge[k], rays[k]);
+        let [first, second] = [0, 1].map(|k| match tips[1] {
             Some(tip) => tip.extend(1.0),
-            None => self.back_rays[k].extend(0.0),
-        };
-        let [first, second] = [0, 1].map(far);
+            None => of_ray(k, &self.back_rays),
+        });
         let [a, b] = self.edge.map(|p| p.extend(1.0));
         let middle = match tips {
-            (Some(_), None) => Some(self.common_line(self.front.normal)),
-            (None, Some(_)) => Some(self.common_line(self.back.normal)),
+            [Some(tip), None] => Some(end.of_ray(tip, self.common_line(self.front.normal))),
+            [None, Some(tip)] => Some(end.of_ray(tip, self.common_line(self.back.normal))),
             _ => None,
         };
-        let ends = [0, 1].map(|k| near[k].iter().map(|l| l.vertex));
-        let [left, right] = ends;
+        let [left, right] = [0, 1].map(|k| near[k].iter().map(|l| l.vertex));
         let mut out = fan(&[a, b, second, first]);
         let side: Vec<DVec4> = [first]
             .into_iter()
@@ -91,8 +91,8 @@ impl LinkedWedge {
         out.extend(fan(&side));
         let side: Vec<DVec4> = [second].into_iter().chain(right).chain(middle).collect();
         out.extend(fan(&side));
-        let [r, s] = self.front_rays.map(|d| d.extend(0.0));
-        match (middle, tips.0) {
+        let [r, s] = [0, 1].map(|k| of_ray(k, &self.front_rays));
+        match (middle, tips[0]) {
             (Some(m), Some(_)) => out.extend(fan(&[first, second, m])),
             (Some(m), None) => out.extend(fan(&[m, s, r])),
             (None, None) => out.extend(cap(&[first, second, s, r])),
@@ -102,10 +102,10 @@ impl LinkedWedge {
     }
 
     /// Where the two side planes meet, towards `inwards`.
-    fn common_line(&self, inwards: DVec3) -> DVec4 {
+    fn common_line(&self, inwards: DVec3) -> DVec3 {
         let line = self.sides[0].normal.cross(self.sides[1].normal);
         let line = if line.dot(inwards) < 0.0 { -line } else { line };
-        line.normalize_or_zero().extend(0.0)
+        line.normalize_or_zero()
     }
 }
 
@@ -116,13 +116,14 @@ struct Link {
     vertex: DVec4,
 }
 
-/// The vertices of a ray from `apex`, the infinite one last.
-fn chain(apex: DVec3, ray: DVec3, cuts: &[Cut]) -> Vec<Link> {
+/// The vertices of a ray from `apex`, its end last.
+fn chain(apex: DVec3, ray: DVec3, cuts: &[Cut], end: &End) -> Vec<Link> {
     let link = |at: f64, vertex: DVec4| Link { at, vertex };
-    let cuts = cuts.iter().map(|c| link(c.at, c.point.extend(1.0)));
+    let cuts = cuts.iter().filter(|c| end.holds(c.point));
+    let cuts = cuts.map(|c| link(c.at, c.point.extend(1.0)));
     std::iter::once(link(0.0, apex.extend(1.0)))
         .chain(cuts)
-        .chain([link(f64::INFINITY, ray.extend(0.0))])
+        .chain([link(f64::INFINITY, end.of_ray(apex, ray))])
         .collect()
 }
 
@@ -140,8 +141,9 @@ pub(crate) fn between_rays(
     apexes: [DVec3; 2],
     rays: [DVec3; 2],
     cuts: [&[Cut]; 2],
+    end: &End,
 ) -> Vec<Triangle> {
-    let [first, second] = [0, 1].map(|k| chain(apexes[k], rays[k], cuts[k]));
+    let [first, second] = [0, 1].map(|k| chain(apexes[k], rays[k], cuts[k], end));
     between(&first, &second)
 }
 
@@ -175,10 +177,13 @@ fn fan(corners: &[DVec4]) -> Vec<Triangle> {
     triangles.filter(has_three_corners).collect()
 }
 
-/// A cap at infinity, from its middle: far more even than from a corner.
+/// A cap, from its middle: at infinity far more even than from a corner.
 fn cap(ring: &[DVec4; 4]) -> Vec<Triangle> {
-    let sum: DVec3 = ring.iter().map(|v| v.truncate()).sum();
-    let middle = sum.normalize_or(DVec3::Z).extend(0.0);
+    let sum: DVec4 = ring.iter().sum();
+    let middle = match sum.w {
+        0.0 => sum.truncate().normalize_or(DVec3::Z).extend(0.0),
+        count => sum / count,
+    };
     let next = |k: usize| ring[(k + 1) % 4];
     let triangles = (0..4).map(|k| [ring[k], next(k), middle]);
     triangles.filter(has_three_corners).collect()
@@ -194,6 +199,7 @@ mod tests {
 
     use super::super::{LinkedSettings, LinkedStatistics, link};
     use super::*;
+    use crate::geometry::wedge::Plane;
 
     type Bits = [u64; 4];
 
@@ -273,8 +279,17 @@ mod tests {
         wedges.into_iter().zip(all).collect()
     }
 
-    fn parts((wedge, cuts): &(LinkedWedge, [Vec<Cut>; 2])) -> WedgeParts {
-        wedge.parts(cuts.each_ref().map(Vec::as_slice))
+    /// At infinity, and in a plane before some of the tips.
+    fn ends() -> [End; 2] {
+        let plane = Plane {
+            normal: DVec3::Y,
+            point: DVec3::new(0.0, -0.5, 0.0),
+        };
+        [End(None), End(Some(plane))]
+    }
+
+    fn parts((wedge, cuts): &(LinkedWedge, [Vec<Cut>; 2]), end: &End) -> WedgeParts {
+        wedge.parts(cuts.each_ref().map(Vec::as_slice), end)
     }
 
     /// Front face and other faces close every wedge, whether its sides meet or not.
@@ -282,10 +297,10 @@ mod tests {
     fn front_and_other_faces_close_a_wedge() {
         for outline in outlines() {
             for radius in [0.05, 0.6, 1.5] {
-                for wedge in linked(&outline, radius) {
-                    let p = parts(&wedge);
+                for (wedge, end) in linked(&outline, radius).iter().zip(ends().iter().cycle()) {
+                    let p = parts(wedge, end);
                     let open = boundary(p.front.iter().chain(&p.others));
-                    assert!(open.is_empty(), "radius {radius}: {open:?}");
+                    assert!(open.is_empty(), "radius {radius}, {end:?}: {open:?}");
                 }
             }
         }
@@ -300,11 +315,16 @@ mod tests {
                 let wedges = linked(outline, radius);
                 let meet = wedges.iter().any(|(w, _)| w.front_tip().is_some());
                 assert_eq!(meet, tips, "radius {radius}");
-                let all: Vec<WedgeParts> = wedges.iter().map(parts).collect();
-                let fronts = all.iter().flat_map(|p| p.front.iter().chain(&p.beyond));
-                for [a, b] in boundary(fronts) {
-                    let w = [a, b].map(|v| f64::from_bits(v[3]));
-                    assert_eq!(w[0], w[1], "radius {radius}: an open ray");
+                for end in ends() {
+                    let all = wedges.iter().map(|w| parts(w, &end));
+                    let all: Vec<WedgeParts> = all.collect();
+                    let fronts = all.iter().flat_map(|p| p.front.iter().chain(&p.beyond));
+                    // Open edges lie in the silhouette or in the end, none between them.
+                    let in_silhouette = |v: Bits| f64::from_bits(v[1]) == 1.0;
+                    for [a, b] in boundary(fronts) {
+                        let open = in_silhouette(a) != in_silhouette(b);
+                        assert!(!open, "radius {radius}, {end:?}: an open ray");
+                    }
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 pub(crate) mod axes;
 pub(crate) mod casters;
+pub(crate) mod depth_copy;
 pub(crate) mod hard;
 pub(crate) mod light;
 pub(crate) mod reach;
@@ -89,7 +90,7 @@ pub(crate) fn scene_wedges(scene: &Scene, params: &Params) -> Result<SceneWedges
         };
         for caster in &casters {
             let report = &mut LinkedReport::default();
-            let volume = caster.soft_volume(&sphere, &settings.linked(), report);
+            let volume = caster.soft_volume(&sphere, &settings.linked(), None, report);
             meshes.extend(volume.wedges.iter().map(LinkedWedge::mesh));
         }
     }

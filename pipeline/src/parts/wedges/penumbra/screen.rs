@@ -8,7 +8,7 @@ use gnomon_shaders::penumbra::plane::ScreenPlane;
 use gnomon_shaders::penumbra::tiles::WedgePlanes;
 
 use crate::geometry::wedge::Plane;
-use crate::geometry::wedge::paper1::LinkedWedge;
+use crate::geometry::wedge::paper1::{End, LinkedWedge};
 use crate::parts::passes::View;
 
 /// Turns planes into [`ScreenPlane`]s for one view and image size.
@@ -55,11 +55,12 @@ impl Screen {
     }
 
     /// The planes of a wedge as pixels and tiles are tested against them.
-    pub(crate) fn wedge_planes(&self, view: &View, wedge: &LinkedWedge) -> WedgePlanes {
+    pub(crate) fn wedge_planes(&self, view: &View, wedge: &LinkedWedge, end: &End) -> WedgePlanes {
         let planes = self.wedge(view, wedge);
         WedgePlanes {
             planes,
             front_margin: self.depth_margin(&planes[0]),
+            bottom: end.0.map(|plane| self.plane(view, &plane)),
         }
     }
 
@@ -118,6 +119,15 @@ pub(crate) fn rates(wedge: &LinkedWedge, interpolation: Interpolation) -> Intens
     IntensityRates {
         back_over_front: [ratio(0), ratio(1)],
         first_over_second: over(first, second),
+        interpolation,
+    }
+}
+
+/// Where there is no wedge, and no intensity.
+pub(crate) fn no_rates(interpolation: Interpolation) -> IntensityRates {
+    IntensityRates {
+        back_over_front: [1.0; 2],
+        first_over_second: 1.0,
         interpolation,
     }
 }

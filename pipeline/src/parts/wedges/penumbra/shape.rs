@@ -6,7 +6,7 @@ use glam::DVec4;
 use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, TextureBinding, VertexBuffer};
 
 use super::volume::Triangle;
-use crate::geometry::wedge::paper1::{Cut, LinkedWedge};
+use crate::geometry::wedge::paper1::WedgeParts;
 use crate::parts::passes::{self, View};
 use crate::parts::visibility::homogeneous;
 
@@ -45,8 +45,7 @@ pub(crate) struct WedgeShape {
 }
 
 impl WedgeShape {
-    pub(crate) fn new(view: &View, wedge: &LinkedWedge, cuts: &[Vec<Cut>; 2]) -> Self {
-        let parts = wedge.parts(cuts.each_ref().map(Vec::as_slice));
+    pub(crate) fn new(view: &View, parts: WedgeParts) -> Self {
         let beyond = &parts.beyond;
         Self {
             front: triangles(view, &parts.front),

@@ -14,7 +14,9 @@ use glam::{DVec3, DVec4};
 use super::light::LightSphere;
 use super::report::LinkedReport;
 use crate::geometry::wedge::Plane;
-use crate::geometry::wedge::paper1::{Cut, LinkedSettings, LinkedWedge, between_rays, link};
+use crate::geometry::wedge::paper1::{
+    Cut, End, LinkedSettings, LinkedWedge, WedgeParts, between_rays, link,
+};
 use crate::geometry::winding;
 use crate::world::mesh::Mesh;
 
@@ -33,8 +35,12 @@ pub(crate) struct SoftVolume {
     pub(crate) cap: Vec<[u32; 3]>,
     /// Between the caster's silhouette and the loop that collapsing left of it.
     pub(crate) patches: Vec<Triangle>,
-    /// At infinity.
+    /// Where it ends.
     pub(crate) bottom: Vec<Triangle>,
+    /// The plane in which each wedge ends.
+    pub(crate) ends: Vec<End>,
+    /// Whether some of the bottom is not at infinity.
+    pub(crate) ends_somewhere: bool,
     /// How often all of infinity is added to the bottom: once for a caster round the
     /// light, whose cap has no silhouette that would say so.
     pub(crate) all_around: i32,
@@ -55,12 +61,23 @@ struct Side {
     wedge: Option<usize>,
 }
 
+/// A silhouette loop and what its shadow is bounded by.
+struct Loop<'a> {
+    points: &'a [DVec3],
+    wedges: Vec<LinkedWedge>,
+    sides: Vec<Side>,
+    end: End,
+}
+
 impl SoftVolume {
+    /// `length` is how far behind its silhouette each loop's shadow ends, if all of it
+    /// comes there.
     pub(crate) fn new(
         loops: &[Vec<DVec3>],
         cap: Vec<[u32; 3]>,
         sphere: &LightSphere,
         settings: &LinkedSettings,
+        length: Option<f64>,
         met: &mut LinkedReport,
     ) -> Self {
         let mut volume = Self {
@@ -70,10 +87,14 @@ impl SoftVolume {
             cap,
             patches: Vec::new(),
             bottom: Vec::new(),
+            ends: Vec::new(),
+            ends_somewhere: false,
             all_around: 0,
         };
         for points in loops {
-            volume.add_loop(points, sphere, settings, met);
+            let mut l = Loop::new(points, sphere, settings, met);
+            l.end_behind(sphere.centre, length, met);
+            volume.add_loop(l, sphere, met);
         }
         volume
     }
@@ -85,44 +106,42 @@ impl SoftVolume {
         self
     }
 
-    fn add_loop(
-        &mut self,
-        points: &[DVec3],
-        sphere: &LightSphere,
-        settings: &LinkedSettings,
-        met: &mut LinkedReport,
-    ) {
-        let wedges = link(
-            points,
-            sphere.centre,
-            sphere.radius,
-            settings,
-            &mut met.linked,
-        );
-        let sides = if wedges.is_empty() {
-            hard_sides(points, sphere.centre)
-        } else {
-            chained(&wedges)
-        };
-        let cuts = cuts(&sides, &wedges);
-        let n = sides.len();
-        for (k, side) in sides.iter().enumerate() {
+    fn add_loop(&mut self, l: Loop<'_>, sphere: &LightSphere, met: &mut LinkedReport) {
+        let cuts = cuts(&l.sides, &l.wedges);
+        let n = l.sides.len();
+        for (k, side) in l.sides.iter().enumerate() {
             let cuts = [&cuts[(k + n - 1) % n], &cuts[k]];
             if side.wedge.is_some() {
                 self.cuts.push(cuts.map(Clone::clone));
+                self.ends.push(l.end);
             } else {
                 met.gaps += 1;
-                self.gaps.extend(side.gap(cuts));
+                self.gaps.extend(side.gap(cuts, &l.end));
             }
         }
-        self.patches.extend(patches(points, &sides));
-        self.bottom.extend(bottom(points, sphere.centre, &sides));
-        self.wedges.extend(wedges);
+        self.patches.extend(patches(l.points, &l.sides));
+        self.bottom
+            .extend(bottom(l.points, sphere.centre, &l.sides, &l.end));
+        self.ends_somewhere |= l.end != End::default();
+        self.wedges.extend(l.wedges);
+    }
+
+    /// A wedge's boundary in parts.
+    pub(crate) fn parts(&self, wedge: usize) -> WedgeParts {
+        let cuts = self.cuts[wedge].each_ref().map(Vec::as_slice);
+        self.wedges[wedge].parts(cuts, &self.ends[wedge])
     }
 
     /// The winding number of the front volume round `p`; `p` not on its boundary.
     pub(crate) fn winding(&self, mesh: &Mesh, p: DVec3) -> i32 {
-        let fronts = self.wedges.iter().flat_map(LinkedWedge::front_quad);
+        let fronts = (0..self.wedges.len()).flat_map(|k| {
+            if self.ends[k] == End::default() {
+                self.wedges[k].front_quad().to_vec()
+            } else {
+                let parts = self.parts(k);
+                [parts.front, parts.beyond].concat()
+            }
+        });
         let gaps = self.gaps.iter().flat_map(|g| g.triangles.iter().copied());
         let cap = self
             .cap
@@ -142,10 +161,65 @@ impl SoftVolume {
     }
 }
 
+impl<'a> Loop<'a> {
+    fn new(
+        points: &'a [DVec3],
+        sphere: &LightSphere,
+        settings: &LinkedSettings,
+        met: &mut LinkedReport,
+    ) -> Self {
+        let wedges = link(
+            points,
+            sphere.centre,
+            sphere.radius,
+            settings,
+            &mut met.linked,
+        );
+        let sides = if wedges.is_empty() {
+            hard_sides(points, sphere.centre)
+        } else {
+            chained(&wedges)
+        };
+        Self {
+            points,
+            wedges,
+            sides,
+            end: End::default(),
+        }
+    }
+
+    /// Ends it `length` behind its points, if there is a length and all of it comes there.
+    fn end_behind(&mut self, centre: DVec3, length: Option<f64>, met: &mut LinkedReport) {
+        let Some(length) = length else {
+            return;
+        };
+        let from_light = self.points.iter().map(|p| *p - centre);
+        let sum: DVec3 = from_light.clone().map(|p| p.normalize_or_zero()).sum();
+        let away = sum.normalize_or_zero();
+        let farthest = from_light.map(|p| p.dot(away)).fold(0.0, f64::max);
+        let end = End(Some(Plane {
+            normal: -away,
+            point: centre + away * (farthest + length),
+        }));
+        if self.reaches(&end) {
+            self.end = end;
+        } else {
+            met.endless += 1;
+        }
+    }
+
+    /// Whether all that bounds the shadow comes to the end.
+    fn reaches(&self, end: &End) -> bool {
+        let fronts = self.sides.iter().flat_map(|s| s.far);
+        let backs = self.wedges.iter().flat_map(|w| w.back_rays);
+        fronts.chain(backs).all(|ray| end.is_reached_by(ray))
+    }
+}
+
 impl Side {
-    fn gap(&self, cuts: [&Vec<Cut>; 2]) -> Option<Gap> {
+    fn gap(&self, cuts: [&Vec<Cut>; 2], end: &End) -> Option<Gap> {
         let [[a, b], [r, s]] = [self.near, self.far];
-        let triangles = between_rays(self.near, self.far, cuts.map(Vec::as_slice));
+        let triangles = between_rays(self.near, self.far, cuts.map(Vec::as_slice), end);
         let plane = Plane::spanned(a, b - a, r)
             .or_else(|| Plane::spanned(a, b - a, s))
             .or_else(|| Plane::spanned(a, r, s));
@@ -245,8 +319,8 @@ fn patches(points: &[DVec3], sides: &[Side]) -> Vec<Triangle> {
     fan.filter(|[x, y, z]| x != y && z != x).collect()
 }
 
-/// The cap at infinity: a fan from the loop's mean direction over the far ends.
-fn bottom(points: &[DVec3], centre: DVec3, sides: &[Side]) -> Vec<Triangle> {
+/// The cap at the end: a fan from the loop's mean direction over the far ends.
+fn bottom(points: &[DVec3], centre: DVec3, sides: &[Side], end: &End) -> Vec<Triangle> {
     let sum: DVec3 = points
         .iter()
         .map(|p| (*p - centre).normalize_or_zero())
@@ -254,7 +328,10 @@ fn bottom(points: &[DVec3], centre: DVec3, sides: &[Side]) -> Vec<Triangle> {
     let Some(mean) = sum.try_normalize() else {
         return Vec::new();
     };
-    let fan = sides.iter().filter(|side| side.far[0] != side.far[1]);
-    fan.map(|side| [mean, side.far[1], side.far[0]].map(|d| d.extend(0.0)))
-        .collect()
+    let middle = end.of_ray(centre, mean);
+    let far = |side: &Side, k: usize| end.of_ray(side.near[k], side.far[k]);
+    let fan = sides
+        .iter()
+        .map(|side| [middle, far(side, 1), far(side, 0)]);
+    fan.filter(|[_, a, b]| a != b).collect()
 }

@@ -1,5 +1,6 @@
 //! One file or folder per verb.
 
+pub(crate) mod bench;
 pub(crate) mod bisect;
 pub(crate) mod compare;
 pub(crate) mod debug;

@@ -3,6 +3,7 @@
 
 mod attack;
 mod bad_input;
+mod bench;
 mod common;
 mod compare;
 mod draws;

@@ -23,6 +23,7 @@ use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
+use crate::verbs::tune::TuneArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -45,6 +46,8 @@ pub(crate) enum Verb {
     Compare(Box<CompareArgs>),
     /// Measure error, time and bytes over scenes, techniques and their parameters
     Bench(Box<BenchArgs>),
+    /// Find the technique and parameters that keep a budget of error, time or bytes
+    Tune(Box<TuneArgs>),
     /// Show where a frame's work and bytes go, as one page to look at
     Report(Box<ReportArgs>),
     /// Record frames of a scene in a trace, to be replayed and looked into
@@ -99,6 +102,7 @@ impl Verb {
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),
+            Self::Tune(args) => verbs::tune::run(args, registry),
             Self::Traffic(args) => verbs::traffic::run(args),
         }
     }

@@ -254,6 +254,40 @@ fn everything_but_times_is_the_same_each_time() {
     }
 }
 
+/// The script of a Slurm array, as two of its tasks run it, and as the last one joins them.
+#[test]
+fn the_slurm_script_makes_the_tables_of_one_run() {
+    let folder = Folder::new("bench-slurm");
+    folder.write(
+        "mini.toml",
+        "[suite]\nscenes = [\"cylinder\"]\nsizes = [\"16x12\"]\nthreads = [1]\n\
+         techniques = [\"unshadowed\", \"pcf:taps=2|4\"]\n",
+    );
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bench/slurm.sh");
+    let run = |what: &str, task: &str| {
+        let mut command = Command::new("bash");
+        command
+            .arg(&script)
+            .args([what, "out"])
+            .current_dir(folder.path(""));
+        command.env("GNOMON", env!("CARGO_BIN_EXE_gnomon"));
+        command
+            .env("SLURM_ARRAY_TASK_ID", task)
+            .env("SLURM_ARRAY_TASK_COUNT", "2");
+        let output = command.output().unwrap();
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    };
+    run("mini.toml", "1");
+    run("mini.toml", "2");
+    run("--merge", "1");
+    let csv = fs::read_to_string(folder.path("out/all/bench.csv")).unwrap();
+    assert_eq!(csv.matches(",measured,").count(), 3, "{csv}");
+}
+
 /// `text` sealed again after a change.
 fn sealed(bytes: &[u8], change: impl Fn(&str) -> String) -> Vec<u8> {
     let text = String::from_utf8(bytes.to_vec()).unwrap();

@@ -18,6 +18,7 @@ mod show;
 mod sweep;
 mod traces;
 mod traffic;
+mod tune;
 mod verbs;
 mod walk_through;
 mod wild;

@@ -28,8 +28,10 @@ pub(super) const COLOURS: [[u8; 3]; 7] = [
     [204, 121, 167],
     [86, 180, 233],
     [230, 159, 0],
-    [90, 90, 90],
+    GREY,
 ];
+/// The colour that goes with the paper.
+pub(super) const GREY: [u8; 3] = [90, 90, 90];
 
 /// What is drawn, in order.
 #[derive(Clone, Debug, PartialEq)]

@@ -16,7 +16,7 @@ const SHAPES: [(&[f32], f64); 9] = [
     ), // star of five
     (&[10.0, 3.5, 10.0, 3.5, 10.0, 3.5, 10.0, 3.5], 0.0), // star of four
     (&[10.0, 3.5, 10.0, 3.5, 10.0, 3.5, 10.0, 3.5], 0.125), // star of four, turned
-    (&[8.0, 10.0, 8.0, 4.0, 8.0, 10.0, 8.0, 4.0], 0.0), // bar
+    (&[10.5, 4.5, 4.5, 10.5, 4.5, 4.5], 0.0), // lens
 ];
 
 /// Reach of the largest marker in pixels, its outline included.

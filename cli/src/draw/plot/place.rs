@@ -84,7 +84,9 @@ const BESIDE: f32 = 22.0;
 pub(super) const HEIGHT: f32 = 22.0;
 const MARGIN: f32 = 4.0;
 /// Gaps between a point and its label that are tried, nearest first.
-const GAPS: [f32; 9] = [12.0, 18.0, 30.0, 45.0, 65.0, 90.0, 125.0, 170.0, 230.0];
+const GAPS: [f32; 11] = [
+    12.0, 18.0, 30.0, 45.0, 65.0, 90.0, 125.0, 170.0, 230.0, 300.0, 380.0,
+];
 /// Directions, best first.
 const DIRECTIONS: [[f32; 2]; 12] = [
     [1.0, 0.0],
@@ -112,7 +114,8 @@ pub(super) fn place(
     let mut placed: Vec<Placed> = Vec::new();
     let mut aside = 0;
     for label in wanted {
-        let near = near(label, obstacles, area, &placed);
+        let near = |crossing| near(label, obstacles, area, &placed, crossing);
+        let near = near(false).or_else(|| near(true));
         let rect = near.unwrap_or_else(|| {
             let top = column[1] + LINE_HEIGHT * aside as f32;
             aside += 1;
@@ -127,8 +130,15 @@ pub(super) fn place(
     placed
 }
 
-/// The first place near the point that is free.
-fn near(label: &Wanted, obstacles: &[Rect], area: Rect, placed: &[Placed]) -> Option<Rect> {
+/// The first place near the point that is free, and that no line between a label and its
+/// point crosses, unless `crossing` is allowed.
+fn near(
+    label: &Wanted,
+    obstacles: &[Rect],
+    area: Rect,
+    placed: &[Placed],
+    crossing: bool,
+) -> Option<Rect> {
     let candidates = GAPS
         .iter()
         .flat_map(|gap| DIRECTIONS.map(|d| candidate(label, *gap, d)));
@@ -138,7 +148,7 @@ fn near(label: &Wanted, obstacles: &[Rect], area: Rect, placed: &[Placed]) -> Op
             && obstacles.iter().all(clear)
             && placed
                 .iter()
-                .all(|p| clear(&p.rect) && !crosses(p, rect, label.at))
+                .all(|p| clear(&p.rect) && (crossing || !crosses(p, rect, label.at)))
     };
     candidates.into_iter().find(free)
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::layout::{Anchor, GRID, INK, Item, Layout, PAPER};
+use super::layout::{Anchor, GREY, GRID, INK, Item, Layout, PAPER};
 use super::raster::{DASH, MARKER_STROKE};
 
 /// Of text, pixels: as wide as the bitmap font in a monospaced one.
@@ -23,6 +23,7 @@ impl Place {
             (Self::Page, INK) => "var(--ink)".to_owned(),
             (Self::Page, GRID) => "var(--line)".to_owned(),
             (Self::Page, PAPER) => "var(--page)".to_owned(),
+            (Self::Page, GREY) => "var(--quiet)".to_owned(),
             _ => hex(colour),
         }
     }

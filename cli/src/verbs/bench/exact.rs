@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// A number that is stored as its shortest decimal text, which reads as the same bits.
 /// (Readers of JSON may be off by one in the last place.)
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Exact(pub(super) f64);
+pub(crate) struct Exact(pub(crate) f64);
 
 impl Serialize for Exact {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

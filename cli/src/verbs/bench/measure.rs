@@ -4,16 +4,18 @@ use std::time::Instant;
 
 use gnomon_pipeline::measure::comparison::{Reference, Score, shaded};
 use gnomon_pipeline::measure::render::{RenderError, RenderSettings, Rendered, render};
+use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
+use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::{GpuConfig, Traffic};
 
 use super::exact::Exact;
 use super::load;
 use super::plan::Task;
 use super::stored::{Found, Measured, Outcome, Stored, Time};
-use super::suite::{Entry, Suite};
+use super::suite::Suite;
 use crate::error::CliError;
 use crate::output::tables;
 
@@ -91,22 +93,51 @@ impl<'a> Bench<'a> {
         let Some(Truth { reference, .. }) = &self.truth else {
             return Err(CliError::Check("no truth was prepared".to_owned()));
         };
-        let scene = &self.suite.scenes[task.scene].scene;
         let entry = &self.suite.entries[task.entry];
-        let gpu = GpuConfig {
-            threads: task.cell.threads,
-            ..GpuConfig::default()
+        let trial = Trial {
+            scene: &self.suite.scenes[task.scene].scene,
+            technique: entry.technique,
+            params: &entry.params,
+            reference,
+            settings: RenderSettings {
+                size: task.cell.size,
+                gpu: GpuConfig {
+                    threads: task.cell.threads,
+                    ..GpuConfig::default()
+                },
+                repeat: self.suite.repeat,
+            },
         };
-        let settings = RenderSettings {
-            size: task.cell.size,
-            gpu,
-            repeat: self.suite.repeat,
-        };
+        trial.measure()
+    }
+}
+
+/// A scene by a technique beside its truth.
+pub(crate) struct Trial<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) technique: &'static dyn Technique,
+    pub(crate) params: &'a Params,
+    pub(crate) reference: &'a Reference,
+    pub(crate) settings: RenderSettings,
+}
+
+impl Trial<'_> {
+    /// Builds, draws and compares.
+    ///
+    /// # Errors
+    /// [`CliError::Render`] where the technique or the GPU refuses.
+    pub(crate) fn measure(&self) -> Result<Measured, CliError> {
         let load = load::average();
-        let done = render(scene, entry.technique, &entry.params, &settings)?;
-        let builds = self.time_builds(task, entry, done.build_ms)?;
-        let under = reference.under(&done.depth)?;
-        let truth = shaded(scene, reference, &under, &entry.params, &settings)?;
+        let done = render(self.scene, self.technique, self.params, &self.settings)?;
+        let builds = self.time_builds(done.build_ms)?;
+        let under = self.reference.under(&done.depth)?;
+        let truth = shaded(
+            self.scene,
+            self.reference,
+            &under,
+            self.params,
+            &self.settings,
+        )?;
         let score = Score::measure(&under, &done, &truth)?;
         Ok(Measured {
             found: found(&done, &score),
@@ -115,27 +146,20 @@ impl<'a> Bench<'a> {
                 frames: done.frames_ms.iter().map(|t| Exact(*t)).collect(),
                 load: load.map(Exact),
                 cores: load::cores(),
-                simd: gpu.simd.name().to_owned(),
+                simd: self.settings.gpu.simd.name().to_owned(),
             },
         })
     }
 
     /// `first`, and further times of building, as many as frames are timed where that is
     /// not long.
-    fn time_builds(
-        &self,
-        task: &Task,
-        entry: &Entry,
-        first: f64,
-    ) -> Result<Vec<Exact>, RenderError> {
-        let scene = &self.suite.scenes[task.scene].scene;
+    fn time_builds(&self, first: f64) -> Result<Vec<Exact>, RenderError> {
         let mut builds = vec![Exact(first)];
         let mut spent = first;
-        while builds.len() < self.suite.repeat as usize && spent < BUILDING_MS {
+        while builds.len() < self.settings.repeat as usize && spent < BUILDING_MS {
             let start = Instant::now();
-            let frame = entry
-                .technique
-                .frame(scene, task.cell.size, &entry.params)?;
+            let size = self.settings.size;
+            let frame = self.technique.frame(self.scene, size, self.params)?;
             let ms = start.elapsed().as_secs_f64() * 1e3;
             drop(frame);
             builds.push(Exact(ms));

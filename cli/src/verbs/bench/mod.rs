@@ -31,4 +31,6 @@ mod suite;
 mod text;
 
 pub(crate) use args::BenchArgs;
+pub(crate) use measure::Trial;
+pub(crate) use pace::Pace;
 pub(crate) use run::run;

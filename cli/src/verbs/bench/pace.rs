@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// How far a benchmark is.
-pub(super) struct Pace {
+pub(crate) struct Pace {
     bar: Option<ProgressBar>,
     /// Cells that are to be measured, and those that were.
     total: usize,
@@ -16,7 +16,7 @@ pub(super) struct Pace {
 
 impl Pace {
     /// The start of `total` measurements.
-    pub(super) fn new(total: usize) -> Self {
+    pub(crate) fn new(total: usize) -> Self {
         Self {
             bar: stderr().is_terminal().then(|| bar(total)),
             total,
@@ -26,7 +26,7 @@ impl Pace {
     }
 
     /// Says what is being done.
-    pub(super) fn doing(&self, what: &str) {
+    pub(crate) fn doing(&self, what: &str) {
         if let Some(bar) = &self.bar {
             bar.set_message(format!("{}{what}", self.left()));
             bar.tick();
@@ -34,7 +34,7 @@ impl Pace {
     }
 
     /// A measurement is done.
-    pub(super) fn done(&mut self, what: &str) {
+    pub(crate) fn done(&mut self, what: &str) {
         self.done += 1;
         match &self.bar {
             Some(bar) => bar.inc(1),
@@ -46,7 +46,7 @@ impl Pace {
     }
 
     /// Says something that stays.
-    pub(super) fn say(&self, line: &str) {
+    pub(crate) fn say(&self, line: &str) {
         // Whoever does not listen need not be told that he does not.
         let write = || {
             let _ = writeln!(stderr().lock(), "{line}");

@@ -56,17 +56,19 @@ fn advise(family: &[Group<'_>]) -> String {
             Cost::Bytes => "bytes",
             _ => "time to build and draw",
         };
-        let mut header = vec!["RMSE at most", "all scenes"];
+        let together = family.len() > 1;
+        let mut header = vec!["RMSE at most"];
+        header.extend(together.then_some("all scenes"));
         header.extend(family.iter().map(|g| g.scene));
         let mut table = Table::new(&format!("The cheapest by {by}"), &header);
         let overall = advice::overall(family, cost);
         for limit in LIMITS {
-            let all =
-                advice::best(&overall, limit).map_or("nothing".to_owned(), |b| b.label.clone());
+            let best = advice::best(&overall, limit);
+            let all = best.map_or("nothing".to_owned(), |b| b.label.clone());
+            let all = together.then_some(all);
             let each = family.iter().map(|g| cheapest(g, cost, limit));
-            table
-                .rows
-                .push([limit.to_string(), all].into_iter().chain(each).collect());
+            let row = std::iter::once(limit.to_string()).chain(all).chain(each);
+            table.rows.push(row.collect());
         }
         out += &page::table(&table);
     }

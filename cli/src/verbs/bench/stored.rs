@@ -85,19 +85,19 @@ pub(super) enum Outcome {
 /// Errors, bytes and times of a cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Measured {
+pub(crate) struct Measured {
     /// Equal on every machine.
-    pub(super) found: Found,
+    pub(crate) found: Found,
     /// Different each time.
-    pub(super) time: Time,
+    pub(crate) time: Time,
 }
 
 /// What has the same bits on every machine, and each time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Found {
-    pub(super) rmse: Option<Exact>,
-    pub(super) max: Option<Exact>,
+pub(crate) struct Found {
+    pub(crate) rmse: Option<Exact>,
+    pub(crate) max: Option<Exact>,
     pub(super) p99: Option<Exact>,
     pub(super) mean: Option<Exact>,
     pub(super) rmse_umbra: Option<Exact>,
@@ -109,7 +109,7 @@ pub(super) struct Found {
     pub(super) flip: Exact,
     pub(super) pixels_compared: usize,
     pub(super) pixels_left_out: usize,
-    pub(super) bytes: u64,
+    pub(crate) bytes: u64,
     /// Bytes read and written by client, clears included.
     pub(super) clients: Vec<(String, [u64; 2])>,
     pub(super) shaded_fragments: u64,
@@ -122,7 +122,7 @@ pub(super) struct Found {
 /// Times in milliseconds, and what they were measured under.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Time {
+pub(crate) struct Time {
     /// Of building the frame, in the order measured.
     pub(super) builds: Vec<Exact>,
     /// Of drawing it, in the order measured.
@@ -153,7 +153,7 @@ impl Time {
     }
 
     /// From the mesh to the picture: both medians.
-    pub(super) fn whole(&self) -> f64 {
+    pub(crate) fn whole(&self) -> f64 {
         self.build() + self.frame()
     }
 }

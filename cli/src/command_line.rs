@@ -6,6 +6,7 @@ use gnomon_pipeline::techniques::Registry;
 use crate::error::CliError;
 use crate::flags::ListArgs;
 use crate::verbs;
+use crate::verbs::bench::BenchArgs;
 use crate::verbs::bisect::BisectArgs;
 use crate::verbs::compare::CompareArgs;
 use crate::verbs::debug::DebugArgs;
@@ -22,6 +23,7 @@ use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
+use crate::verbs::tune::TuneArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -42,6 +44,10 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
+    /// Measure error, time and bytes over scenes, techniques and their parameters
+    Bench(Box<BenchArgs>),
+    /// Find the technique and parameters that keep a budget of error, time or bytes
+    Tune(Box<TuneArgs>),
     /// Show where a frame's work and bytes go, as one page to look at
     Report(Box<ReportArgs>),
     /// Record frames of a scene in a trace, to be replayed and looked into
@@ -79,6 +85,7 @@ impl Verb {
     pub(crate) fn run(&self, registry: &Registry) -> Result<(), CliError> {
         match self {
             Self::Compare(args) => verbs::compare::run(args, registry),
+            Self::Bench(args) => verbs::bench::run(args, registry),
             Self::Bisect(args) => verbs::bisect::run(args),
             Self::Demo(args) => verbs::demo::run(args),
             Self::Diff(args) => verbs::diff::run(args),
@@ -95,6 +102,7 @@ impl Verb {
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),
+            Self::Tune(args) => verbs::tune::run(args, registry),
             Self::Traffic(args) => verbs::traffic::run(args),
         }
     }

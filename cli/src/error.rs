@@ -98,6 +98,22 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
+    /// Something of a suite of measurements is wrong, at a flag or a line.
+    #[error("{place}: {problem}")]
+    Suite {
+        /// The flag, or file and line.
+        place: String,
+        /// What is wrong, and what would be valid.
+        problem: String,
+    },
+    /// Results of measurements cannot be used.
+    #[error("{}: {problem}", .path.display())]
+    Results {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// Something of a trace cannot be had.
     #[error("{}: {source}", .path.display())]
     InTrace {

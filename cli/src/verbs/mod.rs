@@ -1,5 +1,6 @@
 //! One file or folder per verb.
 
+pub(crate) mod bench;
 pub(crate) mod bisect;
 pub(crate) mod compare;
 pub(crate) mod debug;
@@ -18,6 +19,7 @@ pub(crate) mod scenes;
 pub(crate) mod techniques;
 pub(crate) mod traffic;
 pub(crate) mod trim;
+pub(crate) mod tune;
 
 /// A scene's name with nothing in it that could leave a folder.
 fn file_stem(scene: &str) -> String {

@@ -3,6 +3,7 @@
 
 mod attack;
 mod bad_input;
+mod bench;
 mod common;
 mod compare;
 mod draws;
@@ -17,6 +18,7 @@ mod show;
 mod sweep;
 mod traces;
 mod traffic;
+mod tune;
 mod verbs;
 mod walk_through;
 mod wild;

@@ -7,6 +7,7 @@ mod common;
 mod compare;
 mod draws;
 mod environment;
+mod looking_inside;
 mod overlays;
 mod pixel;
 mod render;

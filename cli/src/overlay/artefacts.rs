@@ -92,7 +92,9 @@ fn judged<'a>(source: &Source<'_>, sums: &'a Sums) -> Vec<Judged<'a>> {
 impl Judged<'_> {
     /// Why the sum is off, and by how much; `None` where it is not.
     fn cause(&self, place: &Place<'_>) -> Option<(Cause, f64)> {
-        let seen = self.sums.lights[self.light].1.seen_from(place.receiver.point)?;
+        let seen = self.sums.lights[self.light]
+            .1
+            .seen_from(place.receiver.point)?;
         let truth = self.oracle.visibility(&place.receiver);
         let is_off = |sum: f64| (sum.clamp(0.0, 1.0) - truth).abs() > OFF;
         if !is_off(seen.sum()) {

@@ -12,7 +12,10 @@ pub(super) fn draw(source: &Source<'_>) -> Picture {
     let sums = Sums::new(source.scene);
     let most = each_pixel(source.scene, picture.size, |p| {
         let of_lights = sums.seen_from(p).map(|light| light.saturation());
-        of_lights.fold(0.0, |most: f64, s| if s.abs() > most.abs() { s } else { most })
+        of_lights.fold(
+            0.0,
+            |most: f64, s| if s.abs() > most.abs() { s } else { most },
+        )
     });
     let mut canvas = Canvas::dimmed(&picture, 0.45);
     let width = picture.size[0] as usize;

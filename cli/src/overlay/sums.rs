@@ -47,7 +47,9 @@ impl Sums {
     /// What each light looks like from a place, where it is seen.
     pub(super) fn seen_from(&self, place: &Place<'_>) -> impl Iterator<Item = SeenLight> + '_ {
         let point = place.receiver.point;
-        self.lights.iter().filter_map(move |(_, s)| s.seen_from(point))
+        self.lights
+            .iter()
+            .filter_map(move |(_, s)| s.seen_from(point))
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod attack;
 mod bad_input;
+mod cache;
 mod common;
 mod compare;
 mod draws;

@@ -64,7 +64,10 @@ fn tally(scene: &Scene, summed: &Scene) -> Tally {
         tally.unexplained = tally.unexplained.max((seen - sum).abs());
         if (seen - truth).abs() > FAR {
             tally.far += 1;
-            *tally.causes.entry(causes.of(&receiver, &own, *truth)).or_default() += 1;
+            *tally
+                .causes
+                .entry(causes.of(&receiver, &own, *truth))
+                .or_default() += 1;
         }
     }
     println!("{}: {tally:?}", scene.name);

@@ -79,7 +79,10 @@ fn edges_triangles_and_the_picture_agree() {
             );
             let drawn = f64::from(done.visibility[i]);
             let clamped = seen.sum() - seen.saturation();
-            assert!((clamped - drawn).abs() < 2e-3, "{name} {i}: {clamped} and {drawn}");
+            assert!(
+                (clamped - drawn).abs() < 2e-3,
+                "{name} {i}: {clamped} and {drawn}"
+            );
             let one_by_one = seen.edges.iter().map(|e| e.number);
             let mut numbers: Vec<usize> = one_by_one.collect();
             numbers.dedup();
@@ -100,7 +103,10 @@ fn edges_triangles_and_the_picture_agree() {
 fn lights_without_such_a_sum_are_refused_by_name() {
     let mut scene = scene("parallel-plates");
     let refused = VisibilitySum::new(&scene, 3).unwrap_err();
-    assert!(matches!(refused, SumError::NoSuchLight { light: 3, count: 1 }));
+    assert!(matches!(
+        refused,
+        SumError::NoSuchLight { light: 3, count: 1 }
+    ));
     assert_eq!(
         refused.to_string(),
         "light 3: the scene has 1; valid are 0 to 0"

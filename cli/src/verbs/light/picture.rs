@@ -51,7 +51,11 @@ pub(super) fn draw(view: &View) -> Picture {
 /// Writes the numbers of the edges that cover most.
 fn number(canvas: &mut Canvas, seen: &SeenLight) {
     let mut most: Vec<&SeenEdge> = seen.edges.iter().collect();
-    most.sort_by(|a, b| b.coverage.total_cmp(&a.coverage).then(a.number.cmp(&b.number)));
+    most.sort_by(|a, b| {
+        b.coverage
+            .total_cmp(&a.coverage)
+            .then(a.number.cmp(&b.number))
+    });
     for edge in most.into_iter().take(NUMBERED) {
         let [p, q] = edge.on_light;
         let [x, y] = place((p + q) * 0.5).map(|c| c as i32);
@@ -81,10 +85,7 @@ fn outline(is_square: bool) -> Vec<[f32; 2]> {
 /// From the light's coordinates to pixels, y up.
 fn place(p: DVec2) -> [f32; 2] {
     let middle = f64::from(SIDE) / 2.0;
-    [
-        (middle + UNIT * p.x) as f32,
-        (middle - UNIT * p.y) as f32,
-    ]
+    [(middle + UNIT * p.x) as f32, (middle - UNIT * p.y) as f32]
 }
 
 fn stroke(colour: [u8; 3], width: f32) -> Stroke {
@@ -125,7 +126,10 @@ fn legend(view: &View, seen: Option<&SeenLight>) -> Legend {
             Swatch::new(LIGHT, "the light"),
             Swatch::new(CASTER, "casters before it"),
             Swatch::new(ADDS, format!("umbra side: {adding} edges add {added:.6}")),
-            Swatch::new(TAKES, format!("lit side: {taking} edges take {:.6}", -taken)),
+            Swatch::new(
+                TAKES,
+                format!("lit side: {taking} edges take {:.6}", -taken),
+            ),
         ],
         notes: vec![
             format!(

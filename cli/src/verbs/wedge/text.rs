@@ -43,10 +43,7 @@ pub(super) fn wedge(shown: &Shown<'_>, written: &[String]) -> String {
     let [from, to] = shown.edge.ends.map(|e| point(array(e)));
     let mut text = format!(
         "{}, light {}, edge {} of {}: {from} to {to}\n",
-        shown.scene.name,
-        shown.light,
-        shown.number,
-        shown.scene.objects[shown.edge.object].name,
+        shown.scene.name, shown.light, shown.number, shown.scene.objects[shown.edge.object].name,
     );
     if shown.wedges.is_empty() {
         text += "no wedge: the edge is behind the light, in its plane, or without length\n";

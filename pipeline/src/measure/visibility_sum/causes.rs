@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::SumError;
 use crate::geometry::silhouette::light_facing;
-use crate::truth::oracle::area::AreaOracle;
+use crate::truth::oracle::area::{AreaOracle, Workspace};
 use crate::truth::oracle::surfaces::Receiver;
 use crate::world::scene::Scene;
 
@@ -26,11 +26,20 @@ pub enum Cause {
     OtherSilhouettes,
 }
 
+/// Corners, bit by bit.
+type Key = [[u64; 3]; 3];
+
+fn key(corners: &[DVec3; 3]) -> Key {
+    corners.map(|p| p.to_array().map(f64::to_bits))
+}
+
 /// The triangles that face the centre of a light.
 #[derive(Clone, Debug)]
 pub struct Causes {
     /// What each hides, one by one.
     each: Vec<([DVec3; 3], AreaOracle)>,
+    /// Corners of all, sorted, to find a facet among them.
+    keys: Vec<Key>,
     /// What they hide together.
     all: AreaOracle,
     /// Nothing, so that only a receiver's own facet hides.
@@ -58,7 +67,10 @@ impl Causes {
                 .map_err(|_| SumError::Light { light, kind })
         };
         let each = triangles.iter().map(|t| Ok((*t, of(&[*t])?)));
+        let mut keys: Vec<Key> = triangles.iter().map(key).collect();
+        keys.sort_unstable();
         Ok(Self {
+            keys,
             each: each.collect::<Result<_, SumError>>()?,
             all: of(&triangles)?,
             none: of(&[])?,
@@ -67,9 +79,13 @@ impl Causes {
 
     /// The receiver as one whose own facet, `own`, is among these, or is not.
     fn on_own(&self, receiver: &Receiver, own: &[DVec3; 3]) -> Receiver {
-        let is_lit = self.each.iter().any(|(t, _)| t == own);
+        let is_lit = self.is_lit(own);
         // Not the number of any triangle: all others are asked.
         receiver.with_caster(is_lit.then_some(u32::MAX))
+    }
+
+    fn is_lit(&self, own: &[DVec3; 3]) -> bool {
+        self.keys.binary_search(&key(own)).is_ok()
     }
 
     /// The papers' sum, taken over triangles and not clamped, for a receiver on the facet
@@ -78,22 +94,23 @@ impl Causes {
     /// # Panics
     /// The receiver is free: no point of a facet.
     pub fn summed(&self, receiver: &Receiver, own: &[DVec3; 3]) -> f64 {
-        let point = receiver.point;
-        let facing = receiver.normal.expect("a point of a facet");
-        let hidden = |(corners, oracle): &([DVec3; 3], AreaOracle)| {
-            let [a, b, c] = *corners;
-            let normal = (b - a).cross(c - a);
-            let (share, behind) = if corners == own {
-                // All that is behind its plane, which it is too near to see.
-                let seen = self.none.visibility(&self.on_own(receiver, own));
-                (1.0 - seen, normal.dot(facing) < 0.0)
-            } else {
-                let seen = oracle.visibility(&Receiver::free(point));
-                (1.0 - seen, normal.dot(point - a) < 0.0)
-            };
-            if behind { share } else { -share }
-        };
-        1.0 - self.each.iter().map(hidden).sum::<f64>()
+        let mut sum = 1.0;
+        if self.is_lit(own) {
+            // All that is behind its plane, which the receiver is too near to see.
+            let hidden = 1.0 - self.none.visibility(&self.on_own(receiver, own));
+            let [a, b, c] = *own;
+            let facing = receiver.normal.expect("a point of a facet");
+            let behind = (b - a).cross(c - a).dot(facing) < 0.0;
+            sum -= if behind { hidden } else { -hidden };
+        }
+        let near = self.all.near(receiver.point, &mut Workspace::default());
+        let near = near.unwrap_or_else(|| (0..self.each.len() as u32).collect());
+        for (corners, oracle) in near.iter().map(|i| &self.each[*i as usize]) {
+            if corners != own {
+                sum -= signed_share(corners, oracle, receiver.point);
+            }
+        }
+        sum
     }
 
     /// Visibility behind what these triangles hide together.
@@ -116,4 +133,12 @@ impl Causes {
             Cause::TakenAway
         }
     }
+}
+
+/// What a triangle hides of the light; negative where its other side is seen.
+fn signed_share(corners: &[DVec3; 3], oracle: &AreaOracle, point: DVec3) -> f64 {
+    let [a, b, c] = *corners;
+    let hidden = 1.0 - oracle.visibility(&Receiver::free(point));
+    let behind = (b - a).cross(c - a).dot(point - a) < 0.0;
+    if behind { hidden } else { -hidden }
 }

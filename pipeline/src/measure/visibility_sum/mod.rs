@@ -13,7 +13,7 @@ use glam::DVec3;
 pub use causes::{Cause, Causes};
 pub use seen::{SeenEdge, SeenLight, SeenTriangle};
 
-use crate::geometry::area_light::{AreaLight, AreaLightError, Clipped};
+use crate::geometry::area_light::{AreaLight, AreaLightError};
 use crate::geometry::caster::CasterPolicy;
 use crate::geometry::coverage::{LightPlane, LightSegment, Projection, SphereOutline, umbra_side};
 use crate::geometry::wedge::{Construction, Wedge, WedgeStatistics};
@@ -66,12 +66,28 @@ pub enum SumError {
     Caster(#[from] TechniqueError),
 }
 
+/// A side of a light, and the penumbrae before it.
+#[derive(Clone, Debug)]
+struct Side {
+    light: AreaLight,
+    /// Edge after edge.
+    penumbrae: Vec<Penumbra>,
+}
+
+/// Where a part of an edge can be seen before the light.
+#[derive(Clone, Debug)]
+struct Penumbra {
+    /// Number of its edge.
+    edge: usize,
+    wedge: Wedge,
+}
+
 /// The casters of a scene before one area light.
 #[derive(Clone, Debug)]
 pub struct VisibilitySum {
     plane: LightPlane,
-    /// The light's sides: two of a flat one, which shines to both.
-    sides: Vec<AreaLight>,
+    /// Two of a flat light, which shines to both.
+    sides: Vec<Side>,
     edges: Vec<SilhouetteEdge>,
     /// Counts what hides the centre.
     hard: HardOracle,
@@ -94,20 +110,22 @@ impl VisibilitySum {
         let plane = plane.ok_or(SumError::Light { light, kind })?;
         let area =
             AreaLight::new(&source.shape).map_err(|source| SumError::Area { light, source })?;
-        let sides = match area {
-            AreaLight::Sphere { .. } => vec![area],
-            flat => vec![flat.clone(), flat.reversed()],
-        };
         let centre = HardLight::Point(plane.centre());
         let objects = scene.objects.iter().enumerate().filter(|(_, o)| o.casts);
         let triangles = objects.flat_map(|(number, o)| {
             let all = 0..o.mesh.triangles().len();
             all.map(move |t| (number, o.mesh.corners(t)))
         });
+        let edges = silhouette_edges(scene, centre)?;
+        let lights = match area {
+            AreaLight::Sphere { .. } => vec![area],
+            flat => vec![flat.clone(), flat.reversed()],
+        };
+        let sides = lights.into_iter().map(|light| Side::new(light, &edges));
         Ok(Self {
             plane,
-            sides,
-            edges: silhouette_edges(scene, centre)?,
+            sides: sides.collect(),
+            edges,
             hard: HardOracle::new(scene, centre),
             triangles: triangles.collect(),
         })
@@ -136,20 +154,15 @@ impl VisibilitySum {
         let ends = self.edges[edge].ends;
         let statistics = &mut WedgeStatistics::default();
         let sides = self.sides.iter();
-        let wedges = sides.flat_map(|s| Wedge::of_edge(construction, s, ends, statistics));
+        let wedges = sides.flat_map(|s| Wedge::of_edge(construction, &s.light, ends, statistics));
         wedges.collect()
     }
 
     /// What a receiver sees of the light; `None` in the light's plane or inside a sphere.
     pub fn seen_from(&self, receiver: DVec3) -> Option<SeenLight> {
         let projection = self.plane.seen_from(receiver)?;
-        let side = self.side_of(receiver);
-        let edges = self.edges.iter().enumerate();
-        let seen = edges.flat_map(|(number, edge)| {
-            self.parts(side, edge)
-                .into_iter()
-                .filter_map(move |ends| self.seen(&projection, number, edge, ends, receiver))
-        });
+        let penumbrae = self.side_of(receiver).penumbrae.iter();
+        let seen = penumbrae.filter_map(|p| self.seen(&projection, p, receiver));
         Some(SeenLight {
             is_square: self.is_square(),
             centre_hidden: self.hard.shadow_count_at(receiver),
@@ -158,19 +171,13 @@ impl VisibilitySum {
     }
 
     /// The share, signed, that edge number `edge` adds at a receiver.
-    ///
-    /// # Panics
-    /// There is no such edge.
     pub fn contribution(&self, edge: usize, receiver: DVec3) -> f64 {
         let Some(projection) = self.plane.seen_from(receiver) else {
             return 0.0;
         };
-        let edge_seen = &self.edges[edge];
-        let parts = self.parts(self.side_of(receiver), edge_seen).into_iter();
-        let seen = parts
-            .filter_map(|ends| self.seen(&projection, edge, edge_seen, ends, receiver))
-            .map(|s| s.contribution());
-        seen.sum()
+        let seen = self.side_of(receiver).of_edge(edge).iter();
+        let seen = seen.filter_map(|p| self.seen(&projection, p, receiver));
+        seen.map(|s| s.contribution()).sum()
     }
 
     /// Triangles of casters between a receiver and the light, as they look on the light.
@@ -178,47 +185,74 @@ impl VisibilitySum {
         let Some(projection) = self.plane.seen_from(receiver) else {
             return Vec::new();
         };
-        let side = self.side_of(receiver);
+        let side = &self.side_of(receiver).light;
         let seen = self.triangles.iter();
-        seen.filter_map(|(object, corners)| {
-            SeenTriangle::of(&projection, side, *object, corners)
-        })
-        .collect()
+        seen.filter_map(|(object, corners)| SeenTriangle::of(&projection, side, *object, corners))
+            .collect()
     }
 
     /// The side of the light that shines on a receiver.
-    fn side_of(&self, receiver: DVec3) -> &AreaLight {
-        let front = |s: &&AreaLight| {
-            s.normal()
-                .is_none_or(|n| n.dot(receiver - s.centre()) > 0.0)
+    fn side_of(&self, receiver: DVec3) -> &Side {
+        let front = |s: &&Side| {
+            let height = |n: DVec3| n.dot(receiver - s.light.centre());
+            s.light.normal().is_none_or(|n| height(n) > 0.0)
         };
         self.sides.iter().find(front).unwrap_or(&self.sides[0])
-    }
-
-    /// What of an edge is before the light.
-    fn parts(&self, side: &AreaLight, edge: &SilhouetteEdge) -> Vec<[DVec3; 2]> {
-        match side.clip(edge.ends) {
-            Clipped::Parts(parts) => parts.into_iter().map(|p| p.ends).collect(),
-            Clipped::Behind | Clipped::InPlane => Vec::new(),
-        }
     }
 
     fn seen(
         &self,
         projection: &Projection,
-        number: usize,
-        edge: &SilhouetteEdge,
-        ends: [DVec3; 2],
+        penumbra: &Penumbra,
         receiver: DVec3,
     ) -> Option<SeenEdge> {
-        let on_light: LightSegment = projection.clip(ends)?;
+        if !penumbra.may_hold(receiver, self.sides[0].light.bounding_radius()) {
+            return None;
+        }
+        let on_light: LightSegment = projection.clip(penumbra.wedge.edge)?;
+        let edge = &self.edges[penumbra.edge];
         Some(SeenEdge {
-            number,
+            number: penumbra.edge,
             object: edge.object,
             on_light,
             coverage: Projection::covered(on_light, self.is_square()),
             inside: umbra_side(self.centre(), edge.ends, receiver),
         })
+    }
+}
+
+impl Side {
+    fn new(light: AreaLight, edges: &[SilhouetteEdge]) -> Self {
+        let statistics = &mut WedgeStatistics::default();
+        let mut penumbrae = Vec::new();
+        for (number, edge) in edges.iter().enumerate() {
+            let wedges = Wedge::of_edge(Construction::Exact, &light, edge.ends, statistics);
+            penumbrae.extend(wedges.into_iter().map(|wedge| Penumbra {
+                edge: number,
+                wedge,
+            }));
+        }
+        Self { light, penumbrae }
+    }
+
+    fn of_edge(&self, edge: usize) -> &[Penumbra] {
+        let first = self.penumbrae.partition_point(|p| p.edge < edge);
+        let last = self.penumbrae.partition_point(|p| p.edge <= edge);
+        &self.penumbrae[first..last]
+    }
+}
+
+/// How far outside a penumbra a receiver may be, in radii of the light, before it is left
+/// out: more than rounding.
+const NEAR: f64 = 1e-6;
+
+impl Penumbra {
+    /// Whether the edge may be seen before the light.
+    fn may_hold(&self, receiver: DVec3, radius: f64) -> bool {
+        let volume = &self.wedge.volume;
+        // Half-spaces, of edges that touch the light, may have no planes.
+        let mut planes = volume.planes().iter();
+        planes.all(|plane| plane.distance(receiver) >= -NEAR * radius)
     }
 }
 

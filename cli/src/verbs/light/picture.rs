@@ -128,7 +128,7 @@ fn legend(view: &View, seen: Option<&SeenLight>) -> Legend {
             Swatch::new(ADDS, format!("umbra side: {adding} edges add {added:.6}")),
             Swatch::new(
                 TAKES,
-                format!("lit side: {taking} edges take {:.6}", -taken),
+                format!("lit side: {taking} edges take {:.6}", f64::abs(taken)),
             ),
         ],
         notes: vec![

@@ -6,8 +6,9 @@ use gnomon_pipeline::geometry::wedge::WedgeMesh;
 use super::run::Shown;
 use crate::draw::{Canvas, Legend, Picture, Projection, Stroke, Swatch, diverging};
 
-const OUTER: [u8; 3] = [240, 140, 50];
-const INNER: [u8; 3] = [70, 160, 240];
+// As on the scale: blue where light is taken.
+const OUTER: [u8; 3] = [70, 160, 240];
+const INNER: [u8; 3] = [240, 140, 50];
 const QUAD: [u8; 3] = [235, 60, 60];
 const EDGE: [u8; 3] = [255, 255, 255];
 /// Opacity of a half's face.

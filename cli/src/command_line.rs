@@ -14,6 +14,7 @@ use crate::verbs::demo::DemoArgs;
 use crate::verbs::diff::DiffArgs;
 use crate::verbs::dump::DumpArgs;
 use crate::verbs::info::InfoArgs;
+use crate::verbs::light::LightArgs;
 use crate::verbs::pixel::PixelArgs;
 use crate::verbs::profiles::ProfilesArgs;
 use crate::verbs::record::RecordArgs;
@@ -24,6 +25,7 @@ use crate::verbs::reproduce::ReproduceArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
 use crate::verbs::tune::TuneArgs;
+use crate::verbs::wedge::WedgeArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -74,6 +76,10 @@ pub(crate) enum Verb {
     Traffic(TrafficArgs),
     /// List the profiles of hardware, or show where their values are from
     Profiles(ProfilesArgs),
+    /// Show a light as a pixel's surface sees it, and the edges that add up to its visibility
+    Light(LightArgs),
+    /// Show the penumbra wedge of one silhouette edge, and what the edge covers
+    Wedge(WedgeArgs),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -97,6 +103,8 @@ impl Verb {
             Self::Record(args) => verbs::record::run(args, registry),
             Self::Replay(args) => verbs::replay::run(args),
             Self::Info(args) => verbs::info::run(args),
+            Self::Light(args) => verbs::light::run(args),
+            Self::Wedge(args) => verbs::wedge::run(args),
             Self::Dump(args) => verbs::dump::run(args),
             Self::Trim(args) => verbs::trim::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),

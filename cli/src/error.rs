@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use gnomon_claims::{ReproduceError, UnknownClaim};
 use gnomon_pipeline::measure::comparison::CompareError;
 use gnomon_pipeline::measure::render::RenderError;
+use gnomon_pipeline::measure::visibility_sum::SumError;
 use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
@@ -125,6 +126,9 @@ pub(crate) enum CliError {
     /// No cause of a difference is found.
     #[error(transparent)]
     Bisect(#[from] gnomon_traces::BisectError),
+    /// A light's visibility is not added up from edges.
+    #[error(transparent)]
+    Sum(#[from] SumError),
     /// The GPU refuses a frame.
     #[error(transparent)]
     Gpu(#[from] gnomon_raster::Error),

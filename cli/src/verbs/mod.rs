@@ -8,6 +8,7 @@ pub(crate) mod demo;
 pub(crate) mod diff;
 pub(crate) mod dump;
 pub(crate) mod info;
+pub(crate) mod light;
 pub(crate) mod pixel;
 pub(crate) mod profiles;
 pub(crate) mod record;
@@ -20,6 +21,7 @@ pub(crate) mod techniques;
 pub(crate) mod traffic;
 pub(crate) mod trim;
 pub(crate) mod tune;
+pub(crate) mod wedge;
 
 /// A scene's name with nothing in it that could leave a folder.
 fn file_stem(scene: &str) -> String {

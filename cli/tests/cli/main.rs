@@ -4,10 +4,12 @@
 mod attack;
 mod bad_input;
 mod bench;
+mod cache;
 mod common;
 mod compare;
 mod draws;
 mod environment;
+mod looking_inside;
 mod overlays;
 mod pixel;
 mod render;

@@ -3,10 +3,13 @@
 
 mod attack;
 mod bad_input;
+mod bench;
+mod cache;
 mod common;
 mod compare;
 mod draws;
 mod environment;
+mod looking_inside;
 mod overlays;
 mod pixel;
 mod render;
@@ -17,6 +20,7 @@ mod show;
 mod sweep;
 mod traces;
 mod traffic;
+mod tune;
 mod verbs;
 mod walk_through;
 mod wild;

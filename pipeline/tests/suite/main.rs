@@ -38,6 +38,7 @@ mod soft_stability;
 mod subdivision;
 mod technique_determinism;
 mod views;
+mod visibility_sum;
 mod volumes_in_use;
 mod wedge_adversarial;
 mod wedge_exact;

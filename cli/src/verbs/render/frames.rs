@@ -56,7 +56,9 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         let folder = choose_folder(args, &scene.name);
         let out = folder.join(format!("frame-{frame:04}.png"));
         let job = RenderJob::of(args, technique, params.clone(), scene, Some(out))?;
-        let done = render(&job.scene, technique, &params, &job.settings)?;
+        let ahead = (args.frame).prepare(technique, &params, &job.scene, &progress)?;
+        let mut done = render(&job.scene, technique, &params, &job.settings)?;
+        done.warnings.extend(ahead);
         progress.step();
         let files = write(&job, args, &done, &progress)?;
         table.rows.push(row(frame, time, &done));

@@ -361,6 +361,64 @@ fn side_planes_that_cancel_may_be_left_out() {
     );
 }
 
+/// Quads in place of wedges: as many intensities as there are levels and one, and nearer
+/// to the continuous ones the more there are; an eye in shadow too.
+#[test]
+fn levels_of_quads_come_near_to_continuous_intensities() {
+    for (name, radius) in [("cylinder", 0.5), ("adversarial-eye-in-shadow", 0.3)] {
+        let scene = with_sphere(scene(name), radius);
+        let continuous = picture(&scene, ORIGINAL, &[]).visibility;
+        let error = |levels: u32| {
+            let drawn = picture(&scene, ORIGINAL, &[&format!("levels={levels}")]).visibility;
+            let mut shades = std::collections::BTreeSet::new();
+            let (mut sum, mut count) = (0.0, 0);
+            for (a, b) in drawn.iter().zip(&continuous).filter(|(a, _)| !a.is_nan()) {
+                shades.insert((a * levels as f32).round() as u32);
+                let step = (a * levels as f32).fract();
+                assert!(
+                    step.min(1.0 - step) < 1e-3,
+                    "{name}: {a} of {levels} levels"
+                );
+                sum += f64::from(a - b).powi(2);
+                count += 1;
+            }
+            assert!(shades.len() > levels as usize / 2, "{name}: {shades:?}");
+            (sum / f64::from(count)).sqrt()
+        };
+        let errors = [4, 16, 64].map(error);
+        eprintln!("{name}: 4, 16 and 64 levels {errors:.4?}");
+        assert!(
+            errors[0] > 1.5 * errors[1] && errors[1] < 0.05,
+            "{name}: {errors:?}"
+        );
+        assert!(errors[2] <= errors[1], "{name}: {errors:?}");
+    }
+}
+
+/// A square light by its corners is nearer to the truth than by any sphere; the reference
+/// is right on parallel plates (their RMSE is 0.003).
+#[test]
+fn planes_that_touch_a_square_light_are_nearer_to_the_truth_than_spheres() {
+    let scene = scene("parallel-plates");
+    let truth = picture(&scene, "soft-shadow-volumes", &[]).visibility;
+    let error = |technique: &str, light_as: &str| {
+        let set = [format!("light-as={light_as}")];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let drawn = picture(&scene, technique, &set).visibility;
+        let pairs = drawn.iter().zip(&truth).filter(|(a, _)| !a.is_nan());
+        let squares = pairs.map(|(a, b)| f64::from(a - b).powi(2));
+        (squares.sum::<f64>() / truth.len() as f64).sqrt()
+    };
+    for technique in [ORIGINAL, RESTRUCTURED] {
+        let errors = ["corners", "equal-area", "bounding-sphere"].map(|l| error(technique, l));
+        eprintln!("{technique}: corners, equal area, bounding sphere {errors:.4?}");
+        assert!(
+            errors[0] < 0.8 * errors[1] && errors[1] < errors[2],
+            "{errors:?}"
+        );
+    }
+}
+
 /// zmax throws away blocks, and no bit changes.
 #[test]
 fn zmax_culls_faces_behind_all_surfaces() {

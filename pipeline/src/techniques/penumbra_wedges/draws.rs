@@ -27,10 +27,12 @@ impl CrossingDraws<'_> {
         turn.notes
             .warnings
             .extend(light_contacts::warning(turn.scene, light));
-        turn.notes
-            .warnings
-            .extend(light::substitution(light, source));
-        let Some(sphere) = LightSphere::of(source) else {
+        turn.notes.warnings.extend(light::substitution(
+            light,
+            source,
+            self.settings.penumbra.light_as,
+        ));
+        let Some(sphere) = LightSphere::of(source, self.settings.penumbra.light_as) else {
             found.is_hard = true;
             self.casters
                 .iter()
@@ -46,8 +48,12 @@ impl CrossingDraws<'_> {
         points.iter().for_each(|c| self.hard_volume(turn, c, found));
         for caster in others {
             let volume = caster.soft_volume(&sphere, &linked, None, &mut report);
-            self.start_at_eye(turn, caster, &volume, found);
             found.wedges.extend(self.near_caps(turn, caster, &volume));
+            if let Some(levels) = self.settings.levels {
+                self.quads(turn, caster, (&volume, levels), found);
+                continue;
+            }
+            self.start_at_eye(turn, caster, &volume, found);
             let label = &caster.object.name;
             match self.settings.side_planes {
                 SidePlanes::Cancel => self.faces(turn, label, &volume, found),
@@ -100,7 +106,12 @@ impl CrossingDraws<'_> {
         let pipeline = RenderPipeline {
             label: "near cap".into(),
             vertex: HomogeneousPoints(near_cap::clip_from_world(view)).stage(),
-            fragment: Some(Boundary { front: -FULL }.stage()),
+            fragment: Some(
+                Boundary {
+                    front: -self.settings.full(),
+                }
+                .stage(),
+            ),
             primitive: near_cap::primitive(),
             depth_stencil: DepthStencilState::default(),
             color_targets: vec![ColorTargetState::ADDITIVE],

@@ -36,6 +36,9 @@
 //! say how many. It changes no bit: the face is moved towards the eye by a pixel of its
 //! slope, more than its depth may be off.
 //!
+//! `levels=N` is the approximation by hardware of §7 and figure 15: N quads in place of each
+//! wedge, counted by the depth test, and N + 1 intensities. The paper had 6 to 16.
+//!
 //! Pixels without surface (depth 1) keep the start.
 //!
 //! # Where it is wrong
@@ -51,6 +54,7 @@
 mod crossing;
 mod draws;
 mod faces;
+mod levels;
 
 use gnomon_raster::{Draw, LoadOp, RenderPass, TextureId};
 use gnomon_shaders::penumbra::FULL;
@@ -59,11 +63,12 @@ use crate::parts::casters::{self, Examined};
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
+use crate::parts::visibility::VisibilityTexture;
 use crate::parts::wedges::penumbra::screen::Screen;
 use crate::parts::wedges::penumbra::{self, PenumbraSettings, depth_copy};
 use crate::technique::{
     Capabilities, Condition, Frame, LightFact, Param, ParamInfo, Params, Pass, PassRole,
-    SceneWedges, ShadowKind, Technique, TechniqueError, Warning, WedgeUse,
+    SceneWedges, ShadowKind, Technique, TechniqueError, Warning, WedgeUse, Whole,
 };
 use crate::world::scene::Scene;
 use crate::{choices, param_list};
@@ -128,8 +133,19 @@ const CULLING: Param<Culling> = Param::choice(
     Condition::Lights(LightFact::Extended),
 ]));
 
+const LEVELS: Param<Option<u32>> = Param::<Option<u32>>::whole_or(
+    &["continuous"],
+    "levels",
+    [2, 64],
+    Whole::Any,
+    "continuous intensities, or as many quads for each wedge, counted by the depth test",
+)
+.when(Condition::Lights(LightFact::Extended));
+
 /// What parameters decide.
 struct CrossingSettings {
+    /// Quads in place of each wedge.
+    levels: Option<u32>,
     start: Start,
     side_planes: SidePlanes,
     culling: Culling,
@@ -139,15 +155,24 @@ struct CrossingSettings {
 impl CrossingSettings {
     fn read(params: &Params) -> Result<Self, TechniqueError> {
         let side_planes = params.get(&SIDE_PLANES)?;
+        let levels = params.get(&LEVELS)?;
         Ok(Self {
             start: params.get(&START)?,
             side_planes,
             culling: match side_planes {
-                SidePlanes::Cancel => params.get(&CULLING)?,
-                SidePlanes::Evaluate | SidePlanes::Naive => Culling::None,
+                SidePlanes::Cancel if levels.is_none() => params.get(&CULLING)?,
+                _ => Culling::None,
             },
+            levels,
             penumbra: PenumbraSettings::read(params)?,
         })
+    }
+}
+
+impl CrossingSettings {
+    /// What the buffer holds in full light.
+    fn full(&self) -> f32 {
+        self.levels.map_or(FULL, |n| n as f32)
     }
 }
 
@@ -162,7 +187,7 @@ impl Technique for PenumbraWedges {
 
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
-            &[START.info, SIDE_PLANES.info, CULLING.info],
+            &[START.info, SIDE_PLANES.info, CULLING.info, LEVELS.info],
             PenumbraSettings::PARAMS,
             FrameSettings::PARAMS
         )
@@ -198,9 +223,12 @@ impl Technique for PenumbraWedges {
             screen: Screen::new(&frame.draws.view, size),
         };
         let buffer = penumbra::light_intensity(size, &mut frame.recording)?;
-        let visibility = penumbra::visibility(buffer);
+        let visibility = VisibilityTexture {
+            scale: 1.0 / settings.full(),
+            ..penumbra::visibility(buffer)
+        };
         frame.lit(LitTest::Visibility(visibility), |light| {
-            let mut found = LightWedges::default();
+            let mut found = LightWedges::starting_with(settings.full());
             draws.fill(light, &mut found);
             let mut passes = draws.intensity_passes(light, buffer, found);
             let label = light.label("not receiving");
@@ -246,11 +274,11 @@ struct LightWedges {
     wedges: Vec<Draw>,
 }
 
-impl Default for LightWedges {
-    fn default() -> Self {
+impl LightWedges {
+    fn starting_with(start: f32) -> Self {
         Self {
             is_hard: false,
-            start: FULL,
+            start,
             at_eye: FULL,
             volumes: Vec::new(),
             wedges: Vec::new(),
@@ -269,7 +297,7 @@ impl CrossingDraws<'_> {
     ) -> Vec<Pass> {
         let start = match self.settings.start {
             Start::Eye => found.start,
-            Start::Lit => FULL,
+            Start::Lit => self.settings.full(),
         };
         let mut load = penumbra::cleared(start);
         let mut list = Vec::new();
@@ -290,7 +318,7 @@ impl CrossingDraws<'_> {
                 draws: found.wedges,
                 ..penumbra::intensity_pass(turn.label("wedges"), buffer, load)
             };
-            if self.settings.culling == Culling::Zmax {
+            if self.settings.culling == Culling::Zmax || self.settings.levels.is_some() {
                 pass.depth_stencil = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
             }
             list.push(Pass::new(PassRole::Wedges, pass));

@@ -88,14 +88,16 @@ impl InsideDraws<'_> {
         wedge_draws: &mut Vec<WedgeDraw>,
     ) -> Vec<Pass> {
         let (light, source) = (turn.number, turn.light());
-        turn.notes
-            .warnings
-            .extend(light::substitution(light, source));
+        turn.notes.warnings.extend(light::substitution(
+            light,
+            source,
+            self.choices.penumbra.light_as,
+        ));
         turn.notes
             .warnings
             .extend(light_contacts::warning(turn.scene, light));
         let mut draws = LightDraws::default();
-        match LightSphere::of(source) {
+        match LightSphere::of(source, self.choices.penumbra.light_as) {
             None => self.hard_light(turn, &mut draws),
             Some(sphere) => self.soft_light(turn, &sphere, &mut draws),
         }

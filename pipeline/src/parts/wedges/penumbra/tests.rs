@@ -4,7 +4,7 @@
 use glam::{DMat4, DVec3, DVec4};
 use gnomon_raster::{Gpu, GpuConfig, Subresource};
 
-use super::light::LightSphere;
+use super::light::{LightAs, LightSphere};
 use super::report::LinkedReport;
 use super::volume::SoftVolume;
 use crate::geometry::caster::CasterPolicy;
@@ -47,7 +47,7 @@ struct Reference<'a> {
 
 impl<'a> Reference<'a> {
     fn new(scene: &'a Scene) -> Self {
-        let sphere = LightSphere::of(&scene.lights[0]).unwrap();
+        let sphere = LightSphere::of(&scene.lights[0], LightAs::BoundingSphere).unwrap();
         let casters = casters::examine(scene, CasterPolicy::RequireClosed).unwrap();
         let mut met = LinkedReport::default();
         let settings = LinkedSettings::default();

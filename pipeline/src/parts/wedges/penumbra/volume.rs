@@ -8,6 +8,7 @@
 //! runs across the picture.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use glam::{DVec3, DVec4};
 
@@ -15,7 +16,7 @@ use super::light::LightSphere;
 use super::report::LinkedReport;
 use crate::geometry::wedge::Plane;
 use crate::geometry::wedge::paper1::{
-    Cut, End, LinkedSettings, LinkedWedge, WedgeParts, between_rays, link,
+    Cut, End, LinkedSettings, LinkedWedge, WedgeParts, between_rays, link_under,
 };
 use crate::geometry::winding;
 use crate::world::mesh::Mesh;
@@ -39,6 +40,10 @@ pub(crate) struct SoftVolume {
     pub(crate) bottom: Vec<Triangle>,
     /// The plane in which each wedge ends.
     pub(crate) ends: Vec<End>,
+    /// The wedges of each silhouette loop that has any.
+    loops: Vec<Range<usize>>,
+    /// Boundary of the shadows of loops without any.
+    hard: Vec<Triangle>,
     /// Whether some of the bottom is not at infinity.
     pub(crate) ends_somewhere: bool,
     /// How often all of infinity is added to the bottom: once for a caster round the
@@ -88,6 +93,8 @@ impl SoftVolume {
             patches: Vec::new(),
             bottom: Vec::new(),
             ends: Vec::new(),
+            loops: Vec::new(),
+            hard: Vec::new(),
             ends_somewhere: false,
             all_around: 0,
         };
@@ -123,7 +130,49 @@ impl SoftVolume {
         self.bottom
             .extend(bottom(l.points, sphere.centre, &l.sides, &l.end));
         self.ends_somewhere |= l.end != End::default();
+        let first = self.wedges.len();
+        if l.wedges.is_empty() {
+            let gaps = l
+                .sides
+                .iter()
+                .filter_map(|s| s.gap([&Vec::new(); 2], &l.end));
+            self.hard.extend(gaps.flat_map(|g| g.triangles));
+        } else {
+            self.loops.push(first..first + l.wedges.len());
+        }
         self.wedges.extend(l.wedges);
+    }
+
+    /// The boundary of a hard shadow between the front planes, share 0, and the back
+    /// planes, share 1: sides, and a cap at infinity.
+    pub(crate) fn level(&self, share: f64) -> (Vec<Triangle>, Vec<Triangle>) {
+        let (mut sides, mut bottom) = (self.hard.clone(), self.bottom_of_hard());
+        for range in &self.loops {
+            let wedges = &self.wedges[range.clone()];
+            let chain: Vec<Side> = chained_at(wedges, share);
+            let sum: DVec3 = chain.iter().flat_map(|s| s.far).sum();
+            let middle = sum.normalize_or(DVec3::NEG_Y).extend(0.0);
+            for side in &chain {
+                let none: &[Cut] = &[];
+                let end = End::default();
+                sides.extend(between_rays(side.near, side.far, [none; 2], &end));
+                let [r, s] = side.far.map(|d| d.extend(0.0));
+                bottom.extend((r != s).then_some([middle, s, r]));
+            }
+        }
+        (sides, bottom)
+    }
+
+    /// The cap at infinity of loops without wedges: of their boundary's far corners.
+    fn bottom_of_hard(&self) -> Vec<Triangle> {
+        let far = |t: &Triangle| {
+            let at_infinity: Vec<DVec4> = t.iter().copied().filter(|v| v.w == 0.0).collect();
+            (at_infinity.len() == 2).then(|| [at_infinity[0], at_infinity[1]])
+        };
+        let sum: DVec4 = self.hard.iter().flatten().filter(|v| v.w == 0.0).sum();
+        let middle = sum.truncate().normalize_or(DVec3::NEG_Y).extend(0.0);
+        let edges = self.hard.iter().filter_map(far);
+        edges.map(|[r, s]| [middle, s, r]).collect()
     }
 
     /// A wedge's boundary in parts.
@@ -168,13 +217,7 @@ impl<'a> Loop<'a> {
         settings: &LinkedSettings,
         met: &mut LinkedReport,
     ) -> Self {
-        let wedges = link(
-            points,
-            sphere.centre,
-            sphere.radius,
-            settings,
-            &mut met.linked,
-        );
+        let wedges = link_under(points, &sphere.touched(), settings, &mut met.linked);
         let sides = if wedges.is_empty() {
             hard_sides(points, sphere.centre)
         } else {
@@ -286,6 +329,23 @@ fn chained(wedges: &[LinkedWedge]) -> Vec<Side> {
         }
     }
     sides
+}
+
+/// The same with rays between those of front and back planes.
+fn chained_at(wedges: &[LinkedWedge], share: f64) -> Vec<Side> {
+    let turned = |w: &LinkedWedge| {
+        let between = |k: usize| {
+            w.front_rays[k]
+                .lerp(w.back_rays[k], share)
+                .normalize_or_zero()
+        };
+        LinkedWedge {
+            front_rays: [between(0), between(1)],
+            ..w.clone()
+        }
+    };
+    let turned: Vec<LinkedWedge> = wedges.iter().map(turned).collect();
+    chained(&turned)
 }
 
 type Bits = [u64; 3];

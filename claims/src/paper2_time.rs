@@ -44,10 +44,10 @@ pub(super) fn restructuring(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             beside("invocations of three passes over paper I's", &three),
             beside("invocations of one pass over paper I's", &single),
         ],
-        reason: "The restructured algorithm saves arithmetic a pixel and rasterises more pixels: \
-            umbra boundaries besides front faces of wedges, where our paper I draws back faces \
-            once. On 16 lanes arithmetic is cheap and a pixel that is drawn is not. So paper I \
-            is the faster one here; on a scalar processor it was the other way."
+        reason: "Paper I in the form that was implemented computes intensities where paper II \
+            does, and its step at the front plane costs the same shader: invocations are alike, \
+            and so is the time. The published gain is over finding entry and exit, which four \
+            divisions a pixel cost (see paper2-divisions)."
             .to_owned(),
         charts: Vec::new(),
     })
@@ -73,9 +73,9 @@ pub(super) fn single_pass_time(lab: &mut Lab) -> Result<Finding, ReproduceError>
             ours,
             Unit::Share,
         )],
-        reason: "Three passes rasterise front planes twice, but two of the passes only count a \
-            stencil, which the emulated GPU does for whole blocks; one pass runs the longer \
-            shader wherever either part is drawn. With the load of a machine the sign changes."
+        reason: "Three passes draw front planes twice, which costs what whole blocks cost that \
+            a stencil counts, add the counts of all pixels, and draw front faces once more for \
+            the penumbra; one pass draws them once. With the load of a machine the ratio moves."
             .to_owned(),
         charts: Vec::new(),
     })
@@ -85,8 +85,7 @@ pub(super) fn beside_paper1(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let scene = lab.scene("columns")?;
     let runs: [(&str, &[&str]); 2] = [("penumbra-wedges", &[]), (TECHNIQUE, &["passes=three"])];
     let [original, three] = lab.race(&scene, runs)?;
-    // Depth is texture 0 of both; the reads of zmin and zmax are left out, which the
-    // shader makes once a pixel and not once a tile.
+    // Depth is texture 0 of both; depth tests of umbrae and reads of classes are left out.
     let accesses = |done| {
         let t = counters(done, &WEDGES).traffic;
         t.tex[0].read_accesses + t.stencil.write_accesses + t.color[0].write_accesses
@@ -110,9 +109,11 @@ pub(super) fn beside_paper1(lab: &mut Lab) -> Result<Finding, ReproduceError> {
                 Unit::Ratio,
             ),
         ],
-        reason: "The six came of culling tiles without running the shader, and of an umbra \
-            drawn by a graphics card beside the CPU; the emulated GPU tests a tile at each of \
-            its pixels and draws everything itself."
+        reason: "The six came of culling tiles without running the shader, of an umbra drawn by \
+            a graphics card beside the CPU, and of paper I finding entry and exit points. Here \
+            a pixel in a culled tile still runs a shader that reads its class, and paper I \
+            adds up the same steps and intensities as paper II: their invocations are alike \
+            (see paper2-restructuring)."
             .to_owned(),
         charts: Vec::new(),
     })

@@ -115,7 +115,8 @@ stages! {
         soft_volumes::HardCount: "soft-volumes.hard-count" 1,
         soft_volumes::Resolve: "soft-volumes.resolve" 1,
         soft_volumes::Penumbra<soft_volumes::ExactCoverage>: "soft-volumes.penumbra-exact" 1,
-        soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 1,
+        soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 2,
+        soft_volumes::Penumbra<coverage_table::BlendedTables>: "soft-volumes.penumbra-blended" 1,
         split_volumes::SplitPenumbra: "split-volumes.penumbra" 1,
         split_volumes::CombineGroups: "split-volumes.combine-groups" 1,
         split_volumes::AddVisibility: "split-volumes.add-visibility" 1,
@@ -179,6 +180,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 58);
+        assert_eq!(table.fragment_shaders().count(), 59);
     }
 }

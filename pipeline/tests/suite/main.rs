@@ -15,6 +15,7 @@ mod environment;
 mod hard_truth_speed;
 mod heat;
 mod horizon;
+mod light_images;
 mod lit_tiles;
 mod map_support;
 mod moment_bounds;

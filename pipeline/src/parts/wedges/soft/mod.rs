@@ -6,7 +6,6 @@ pub(crate) mod covering;
 pub(crate) mod edges;
 pub(crate) mod halves;
 pub(crate) mod light;
-pub(crate) mod light_image;
 pub(crate) mod settings;
 pub(crate) mod split_tables;
 pub(crate) mod table;

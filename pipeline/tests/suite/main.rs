@@ -25,6 +25,7 @@ mod open_casters;
 mod outlines;
 mod penumbra_wedges;
 mod planar;
+mod polygon_lights;
 mod ray_traced;
 mod settings_effect;
 mod shader_identity;

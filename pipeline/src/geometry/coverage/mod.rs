@@ -20,10 +20,12 @@
 //! receiver on the quad, V would be wrong by 1.
 
 mod image;
+mod polygon;
 mod round;
 mod square;
 
 pub use image::{ImageSums, Spoke};
+pub use polygon::PolygonImage;
 
 use glam::{DVec2, DVec3};
 

@@ -100,7 +100,7 @@ impl Technique for SoftShadowVolumes {
     }
 
     fn summary(&self) -> &'static str {
-        "soft shadows of rectangles, discs and spheres by penumbra wedges (paper III)"
+        "soft shadows of rectangles, discs, spheres and polygons by penumbra wedges (paper III)"
     }
 
     fn params(&self) -> &'static [ParamInfo] {

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use gnomon_raster::{Format, Recording, Subresource, TextureDescriptor, TextureId};
-use gnomon_shaders::coverage::Image;
+use gnomon_shaders::coverage::{Image, Outline};
 use gnomon_shaders::coverage_table::CoverageTable;
 
-use crate::geometry::coverage::{ImageSums, LightPlane, Spoke};
+use crate::geometry::coverage::{ImageSums, LightPlane, PolygonImage, Spoke};
 use crate::technique::TechniqueError;
 use crate::world::light_image::LightImage;
 use crate::world::memo::Memo;
@@ -110,8 +110,16 @@ fn covered(image: Image, p: DVec2, q: DVec2) -> f64 {
             normal: DVec3::Z,
             radius: 1.0,
         },
+        Image::Polygon(outline) => return polygon_image(&outline).coverage([p, q]),
     };
     // An edge in the light's plane is its own image, whatever the receiver.
     let projection = light.seen_from(DVec3::Z);
     projection.map_or(0.0, |s| s.coverage([p.extend(0.0), q.extend(0.0)]))
+}
+
+/// A polygon as shaders have it.
+pub(super) fn polygon_image(outline: &Outline) -> PolygonImage {
+    let corners = outline.corners.iter().take(outline.count as usize);
+    let corner = |c: &[f32; 2]| DVec2::new(f64::from(c[0]), f64::from(c[1]));
+    PolygonImage::new(corners.map(corner).collect())
 }

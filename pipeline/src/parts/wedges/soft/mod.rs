@@ -6,6 +6,7 @@ pub(crate) mod covering;
 pub(crate) mod edges;
 pub(crate) mod halves;
 pub(crate) mod light;
+pub(crate) mod pieces;
 pub(crate) mod settings;
 pub(crate) mod split_tables;
 pub(crate) mod table;

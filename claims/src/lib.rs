@@ -25,6 +25,7 @@ mod equal_error;
 mod finding;
 mod judge;
 mod lab;
+mod lines;
 mod overlaps;
 mod paper1;
 mod paper2;
@@ -51,6 +52,7 @@ use thiserror::Error;
 pub use finding::{Finding, Measure, Unit};
 pub use judge::{Judgement, SLACK, Theirs};
 pub use lab::{Lab, LabSettings, ReproduceError};
+pub use lines::Lines;
 
 /// How a claim can be checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +93,9 @@ pub struct Claim {
     pub statement: &'static str,
     /// How it can be checked.
     pub verdict: Verdict,
+    /// The lines of the source's transcription that it was read from, in order; empty
+    /// where they are not recorded.
+    pub lines: &'static [Lines],
     measuring: Option<Measuring>,
 }
 
@@ -107,6 +112,7 @@ impl Claim {
             source,
             statement,
             verdict,
+            lines: &[],
             measuring: Some(measuring),
         }
     }
@@ -117,8 +123,15 @@ impl Claim {
             source,
             statement,
             verdict: Verdict::Quoted,
+            lines: &[],
             measuring: None,
         }
+    }
+
+    /// The same claim, with the lines that it was read from.
+    const fn read_from(mut self, lines: &'static [Lines]) -> Self {
+        self.lines = lines;
+        self
     }
 
     /// Measures it; `None` for claims that can only be quoted.

@@ -5,7 +5,7 @@ use std::ops::{Add, Div, Mul};
 
 use super::scenes::{acute_triangle, cylinders};
 use super::tally::{counters, pass_time, ratio};
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::PassRole;
@@ -20,7 +20,8 @@ pub(super) const CLAIMS: &[Claim] = &[
         "Six more wedges round acute vertices cost about 20% of the frame rate, since they \
          are long and thin.",
         extra_wedges,
-    ),
+    )
+    .read_from(&[Lines::to(702, 707)]),
     Claim::new(
         "paper1-side-planes",
         "paper I, §5",
@@ -28,27 +29,31 @@ pub(super) const CLAIMS: &[Claim] = &[
         "Leaving out side planes, which cancel, and precomputing constants make wedge \
          rasterisation about 50% faster.",
         side_planes,
-    ),
+    )
+    .read_from(&[Lines::to(741, 748)]),
     Claim::new(
         "paper1-cost",
         "paper I, §8",
         Verdict::Counters,
         "The cost is proportional to the number of silhouette edges and the area of wedges.",
         cost,
-    ),
+    )
+    .read_from(&[Lines::one(784)]),
     Claim::new(
         "paper1-one-division",
         "paper I, §4.2",
         Verdict::Arithmetic,
         "The intensity inside a wedge can be had with one division instead of four.",
         one_division,
-    ),
+    )
+    .read_from(&[Lines::to(729, 735)]),
     Claim::quoted(
         "paper1-frame-rates",
         "paper I, §7",
         "Athlon at 1.5 GHz: 2 fps in software beside 20 fps of Heckbert and Herf's shadows \
          on a GeForce3; 1.8 fps at 512x512.",
-    ),
+    )
+    .read_from(&[Lines::to(762, 766), Lines::one(852)]),
 ];
 
 fn wedge_pixels(done: &Rendered) -> u64 {

@@ -9,7 +9,7 @@ use super::lab::parsed;
 use super::paper2_tiles::{self, TECHNIQUE};
 use super::paper2_time;
 use super::tally::{counters, pass_time, ratio};
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::measure::tile_traffic::{self, Measured};
 use gnomon_pipeline::technique::PassRole;
@@ -25,14 +25,16 @@ pub(super) const CLAIMS: &[Claim] = &[
         Verdict::Times,
         "Umbra and penumbra apart, without culling: 1.3-1.4 times as fast as paper I.",
         paper2_time::restructuring,
-    ),
+    )
+    .read_from(&[Lines::one(1085)]),
     Claim::new(
         "paper2-culling",
         "paper II, §4 and §7",
         Verdict::Counters,
         "Culling tiles by zmin and zmax makes penumbra rasterisation 3-4 times as fast.",
         culling,
-    ),
+    )
+    .read_from(&[Lines::to(1005, 1009), Lines::one(1025), Lines::one(1101)]),
     Claim::new(
         "paper2-zmax-only",
         "paper II, §7",
@@ -40,21 +42,24 @@ pub(super) const CLAIMS: &[Claim] = &[
         "With zmax alone nothing is gained: columns fall from 7.0 to 2.6 fps, depth reads \
          grow by 50%, stencil writes stay as they are.",
         zmax_only,
-    ),
+    )
+    .read_from(&[Lines::to(1101, 1103)]),
     Claim::new(
         "paper2-tile-size",
         "paper II, §7, figure 7",
         Verdict::Counters,
         "Of tiles of 2 to 256 pixels those of 8 to 32 need fewest memory accesses.",
         paper2_tiles::tile_size,
-    ),
+    )
+    .read_from(&[Lines::to(1090, 1097)]),
     Claim::new(
         "paper2-tile-size-as-counted",
         "paper II, §7, figure 7",
         Verdict::Counters,
         "The same, the sum being of depth reads and stencil writes alone, as the text says.",
         paper2_tiles::tile_size_as_counted,
-    ),
+    )
+    .read_from(&[Lines::to(1090, 1092)]),
     Claim::new(
         "paper2-single-pass",
         "paper II, §7",
@@ -62,14 +67,16 @@ pub(super) const CLAIMS: &[Claim] = &[
         "At tiles of 8 to 32 one pass instead of three saves about 5% of stencil writes, \
          30-60% of depth reads, 20-30% of all accesses.",
         paper2_tiles::single_pass,
-    ),
+    )
+    .read_from(&[Lines::one(1099)]),
     Claim::new(
         "paper2-single-pass-time",
         "paper II, §7",
         Verdict::Times,
         "One pass is 20-60% faster than three, all in software.",
         paper2_time::single_pass_time,
-    ),
+    )
+    .read_from(&[Lines::one(1099)]),
     Claim::new(
         "paper2-further-tests",
         "paper II, §4",
@@ -77,21 +84,24 @@ pub(super) const CLAIMS: &[Claim] = &[
         "Testing tiles against the wedge's planes is enough: its depth range and further \
          separating axes gain hardly anything.",
         further_tests,
-    ),
+    )
+    .read_from(&[Lines::to(1014, 1020), Lines::one(1025)]),
     Claim::new(
         "paper2-test-share",
         "paper II, §4",
         Verdict::Counters,
         "The culling test takes about 1.5% of the execution time.",
         test_share,
-    ),
+    )
+    .read_from(&[Lines::one(1025)]),
     Claim::new(
         "paper2-beside-paper1",
         "paper II, §7",
         Verdict::Times,
         "Three passes with culling are up to six times as fast as paper I on columns.",
         paper2_time::beside_paper1,
-    ),
+    )
+    .read_from(&[Lines::one(1105)]),
     Claim::new(
         "paper2-overlaps",
         "paper I, §4.2; paper II, §6",
@@ -99,13 +109,20 @@ pub(super) const CLAIMS: &[Claim] = &[
         "A signed 16-bit light-intensity buffer holds 256 overlapping penumbrae (paper I), \
          an 8-bit stencil 127 nested umbrae (paper II).",
         overlaps,
-    ),
+    )
+    .read_from(&[Lines::to(643, 647), Lines::one(952), Lines::to(1063, 1065)]),
     Claim::quoted(
         "paper2-frame-rates",
         "paper II, §7",
         "Pentium 4 at 1.7 GHz and GeForce3: columns 7, fractal 2.3 (single pass 1.75), 2002 \
          3.6, Venus 1 fps; the umbra in hardware gains 60-80%.",
-    ),
+    )
+    .read_from(&[
+        Lines::one(915),
+        Lines::one(1085),
+        Lines::one(1103),
+        Lines::to(1177, 1183),
+    ]),
 ];
 
 /// Reads of depth by penumbrae, which the three-pass algorithm has apart.

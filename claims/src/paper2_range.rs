@@ -3,7 +3,7 @@
 use super::lab::parsed;
 use super::paper2_tiles::TECHNIQUE;
 use super::tally::ratio;
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use gnomon_pipeline::measure::tile_traffic::{self, TileTraffic};
 
 pub(super) const CLAIMS: &[Claim] = &[Claim::new(
@@ -13,7 +13,8 @@ pub(super) const CLAIMS: &[Claim] = &[Claim::new(
     "Testing a wedge's range of depth first gains hardly anything beside its planes; that \
      range alone is significantly worse.",
     depth_range,
-)];
+)
+.read_from(&[Lines::one(1018), Lines::one(1025)])];
 
 fn modelled(lab: &Lab, scene: &str, axes: &str) -> Result<TileTraffic, ReproduceError> {
     let scene = lab.scene(scene)?;

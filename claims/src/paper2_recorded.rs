@@ -3,7 +3,7 @@
 
 use super::paper2_tiles::{PASSES, SCENES, TECHNIQUE, TILES};
 use super::recorded::{Level, Recorded, uncached};
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Series};
 use gnomon_pipeline::technique::PassRole;
 
@@ -14,7 +14,8 @@ pub(super) const CLAIMS: &[Claim] = &[Claim::new(
     "Of tiles of 2 to 256 pixels those of 8 to 32 need fewest memory accesses: from \
      recordings, without caches.",
     tile_size,
-)];
+)
+.read_from(&[Lines::to(1090, 1097)])];
 
 const WEDGES: [PassRole; 2] = [PassRole::UmbraStencil, PassRole::Wedges];
 

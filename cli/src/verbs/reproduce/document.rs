@@ -25,6 +25,8 @@ struct ClaimDocument<'a> {
     statement: &'static str,
     /// A, B, C or D.
     verdict: char,
+    /// First and last line of each part of the source that was read; empty where unknown.
+    lines: Vec<[u32; 2]>,
     /// `null` for what is quoted or only listed.
     finding: Option<FindingDocument<'a>>,
     /// What measuring took.
@@ -80,6 +82,7 @@ impl<'a> ClaimDocument<'a> {
             source: claim.source,
             statement: claim.statement,
             verdict: claim.verdict.letter(),
+            lines: claim.lines.iter().map(|l| [l.first, l.last]).collect(),
             finding: outcome.finding.as_ref().map(FindingDocument::new),
             time_ms: outcome.time.as_secs_f64() * 1e3,
             files: &outcome.files,

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use gnomon_claims::{Finding, Judgement, LabSettings, Measure, Theirs, Unit, Verdict};
+use gnomon_claims::{Finding, Judgement, LabSettings, Lines, Measure, Theirs, Unit, Verdict};
 
 use super::run::Outcome;
 use crate::output::json::worker_threads;
@@ -25,6 +25,7 @@ pub(super) fn of(outcome: &Outcome, listed: bool) -> String {
         None => text.push('\n'),
     }
     text += &hanging("  ", 2, claim.statement);
+    text += &read_from(claim.lines);
     text += &outcome.finding.as_ref().map_or(String::new(), measured);
     for file in &outcome.files {
         text += &format!("  wrote {}\n", file.path);
@@ -33,6 +34,16 @@ pub(super) fn of(outcome: &Outcome, listed: bool) -> String {
         text.push('\n');
     }
     text
+}
+
+/// The lines of the source that a claim was read from; nothing where they are unknown.
+fn read_from(lines: &[Lines]) -> String {
+    let ranges: Vec<String> = lines.iter().map(Lines::to_string).collect();
+    match lines {
+        [] => String::new(),
+        [one] if one.first == one.last => format!("  read from: line {}\n", ranges[0]),
+        _ => hanging("  read from: ", 6, &format!("lines {}", ranges.join(", "))),
+    }
 }
 
 fn measured(finding: &Finding) -> String {
@@ -191,6 +202,14 @@ mod tests {
         assert_eq!(span(3.0, 4.0, Unit::Ratio), "3-4x");
         assert_eq!(span(0.3, 0.6, Unit::Share), "30-60%");
         assert_eq!(span(8.0, 32.0, Unit::Count), "8-32");
+    }
+
+    #[test]
+    fn the_lines_of_the_source_are_named() {
+        assert_eq!(read_from(&[]), "");
+        assert_eq!(read_from(&[Lines::one(7)]), "  read from: line 7\n");
+        let two = [Lines::to(1099, 1103), Lines::one(1180)];
+        assert_eq!(read_from(&two), "  read from: lines 1099-1103, 1180\n");
     }
 
     #[test]

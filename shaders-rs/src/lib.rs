@@ -114,6 +114,8 @@ stages! {
         surface::FacetValue: "surface.facet-value" 1,
         surface::Shadowed<surface::Lambert>: "surface.shadowed-lambert" 1,
         surface::Shadowed<surface::Phong>: "surface.shadowed-phong" 1,
+        surface::ShadowedByBytes<surface::Lambert>: "surface.shadowed-by-bytes-lambert" 1,
+        surface::ShadowedByBytes<surface::Phong>: "surface.shadowed-by-bytes-phong" 1,
         soft_volumes::HardCount: "soft-volumes.hard-count" 1,
         soft_volumes::Resolve: "soft-volumes.resolve" 1,
         visibility_buffers::QuadCount: "visibility-buffers.quad-count" 1,
@@ -122,8 +124,7 @@ stages! {
         soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 2,
         soft_volumes::Penumbra<coverage_table::BlendedTables>: "soft-volumes.penumbra-blended" 1,
         split_volumes::SplitPenumbra: "split-volumes.penumbra" 1,
-        split_volumes::CombineGroups: "split-volumes.combine-groups" 1,
-        split_volumes::AddVisibility: "split-volumes.add-visibility" 1,
+        split_volumes::resolve::ResolveSplit: "split-volumes.resolve" 1,
         penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 1,
         penumbra::inside::WedgeInside: "penumbra.wedge-inside" 1,
         penumbra::buffers::TileDepths: "penumbra.tile-depths" 1,
@@ -184,6 +185,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 61);
+        assert_eq!(table.fragment_shaders().count(), 62);
     }
 }

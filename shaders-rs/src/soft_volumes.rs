@@ -176,8 +176,11 @@ pub enum CountTo {
     Visibility,
     /// Alpha of attachments 0 and 1, in steps of 1/255: leaving, and entering.
     Alpha,
+    /// No attachment: what crosses no quad is discarded, and the draw's stencil
+    /// operations count the rest.
+    Stencil,
 }
-uniforms!(enum CountTo { 0: Visibility, 1: Alpha });
+uniforms!(enum CountTo { 0: Visibility, 1: Alpha, 2: Stencil });
 
 /// Counts hard shadow quads between the eye and the surface: those whose plane
 /// has them on different sides. It needs no depth test and no caps, and is right
@@ -193,7 +196,10 @@ uniforms!(HardCount { origin, to });
 
 impl FragmentShader for HardCount {
     fn outputs(&self) -> FragmentOutputs {
-        reads(1)
+        FragmentOutputs {
+            discards: self.to == CountTo::Stencil,
+            ..reads(1)
+        }
     }
 
     #[inline(always)]
@@ -218,6 +224,7 @@ impl FragmentShader for HardCount {
                 f.set_color(0, [zero, zero, zero, left]);
                 f.set_color(1, [zero, zero, zero, entered.max(zero) * step]);
             }
+            CountTo::Stencil => f.discard(entered.eq(zero)),
         }
     }
 }

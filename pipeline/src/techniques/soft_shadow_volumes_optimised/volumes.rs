@@ -2,26 +2,42 @@
 
 use gnomon_raster::state::ColorTargetState;
 use gnomon_raster::{Draw, LoadOp, RenderPass, TextureId};
-use gnomon_shaders::soft_volumes::{CountTo, HardPlane};
+use gnomon_shaders::soft_volumes::HardPlane;
 use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
 
-use super::buffers::Buffers;
 use crate::geometry::wedge::{Wedge, WedgeStatistics};
 use crate::parts::passes::{Targets, View};
 use crate::parts::visibility::{Positions, attachment, binding};
-use crate::parts::wedges::soft::count::Counting;
 use crate::parts::wedges::soft::edges::Silhouettes;
 use crate::parts::wedges::soft::halves::Half;
 use crate::parts::wedges::soft::light::{LightSide, SoftLight};
 use crate::parts::wedges::soft::settings::SoftSettings;
+use crate::parts::wedges::soft::stencil_count::StencilCounting;
 use crate::parts::wedges::soft::wedges::{AreaStatistics, Note, WedgeArea, WedgePipeline};
-use crate::technique::{DrawRole, Pass, PassRole};
+use crate::technique::{DrawRole, Pass, PassRole, Warning};
 
 /// What became of the wedges of all parts of a light.
 #[derive(Default)]
 pub(super) struct PartStatistics {
     pub(super) wedges: WedgeStatistics,
     pub(super) areas: AreaStatistics,
+    /// Loops round holes that are combined, at most of any part.
+    pub(super) holes: u64,
+}
+
+impl PartStatistics {
+    /// Says that holes are filled, if some are.
+    pub(super) fn hole_warning(&self, label: &str) -> Option<Warning> {
+        (self.holes != 0).then(|| Warning {
+            code: "loops-round-holes",
+            count: self.holes as usize,
+            message: format!(
+                "{label}: {} silhouette loops run round holes, which combine-over=loop fills; \
+                 combine-over=outline keeps them",
+                self.holes
+            ),
+        })
+    }
 }
 
 /// Quads and wedges of one part of a light.
@@ -29,7 +45,8 @@ pub(super) struct PartVolumes<'a> {
     pub(super) view: &'a View,
     pub(super) targets: &'a Targets,
     pub(super) positions: Positions,
-    pub(super) buffers: &'a Buffers,
+    /// The additive and the subtractive buffer.
+    pub(super) split: [TextureId; 2],
     pub(super) tables: Option<(Tables, [TextureId; 3])>,
     pub(super) light: &'a SoftLight,
     pub(super) settings: &'a SoftSettings,
@@ -39,16 +56,16 @@ pub(super) struct PartVolumes<'a> {
 
 impl PartVolumes<'_> {
     pub(super) fn count_pass(&self, label: String, group: &Silhouettes) -> Pass {
-        let counting = Counting {
+        let counting = StencilCounting {
             view: self.view,
             positions: self.positions,
             light: self.light,
-            to: CountTo::Visibility,
+            skip: self.settings.skip,
         };
         let pass = RenderPass {
             label,
-            color: vec![attachment(self.buffers.hard, LoadOp::Clear([1.0; 4]))],
-            depth_stencil: None,
+            color: Vec::new(),
+            depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Clear(0)),
             draws: counting.draws(group),
         };
         Pass::new(PassRole::HardCount, pass)
@@ -61,7 +78,7 @@ impl PartVolumes<'_> {
         group: &Silhouettes,
         statistics: &mut PartStatistics,
     ) -> Vec<Pass> {
-        let [added, taken] = self.buffers.split;
+        let [added, taken] = self.split;
         // A light without extent has no wedges to halve.
         if !self.halves || self.light.sides.is_empty() {
             let to = WedgeTarget {

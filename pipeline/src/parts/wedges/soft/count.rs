@@ -81,6 +81,7 @@ impl Counting<'_> {
         let targets = match self.to {
             CountTo::Visibility => 1,
             CountTo::Alpha => 2,
+            CountTo::Stencil => 0,
         };
         let shader = HardCount {
             origin: self.light.shader_origin(self.view),

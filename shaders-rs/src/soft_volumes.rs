@@ -117,11 +117,7 @@ fn umbra_side<L: Lanes>(l: L, normal: [F32<L>; 3], offset: F32<L>, from: [F32<L>
 
 /// The predicate for the plane in the varyings of [`HardQuads`].
 #[inline(always)]
-pub(crate) fn umbra_side_of<L: Lanes>(
-    l: L,
-    f: &mut Fragment<'_, L>,
-    from: [F32<L>; 3],
-) -> Mask<L> {
+pub(crate) fn umbra_side_of<L: Lanes>(l: L, f: &mut Fragment<'_, L>, from: [F32<L>; 3]) -> Mask<L> {
     let normal = each3(
         #[inline(always)]
         |i| f.varying(i),

@@ -11,9 +11,7 @@ use gnomon_shaders::visibility_buffers::ResolveRedGreen;
 
 use super::settings::{Buffer, SoftVolumesSettings};
 use crate::parts::passes::Targets;
-use crate::parts::visibility::{
-    Positions, VisibilityTexture, attachment, binding, full_screen,
-};
+use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
 use crate::technique::TechniqueError;
 
 /// Textures that coverage is added up in.

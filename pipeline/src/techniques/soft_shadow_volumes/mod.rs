@@ -24,6 +24,7 @@ mod settings;
 mod umbra;
 mod volumes;
 
+use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::ShadowedFrame;
@@ -38,7 +39,6 @@ use crate::technique::{
 };
 use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
-use crate::param_list;
 use buffers::Buffers;
 use settings::{BUFFER, COPY_BACK, COUNT, Count, SoftVolumesSettings};
 use umbra::Umbra;

@@ -83,7 +83,8 @@ impl SoftVolumesSettings {
             })
         };
         if settings.copy_back && bytes {
-            let why = "8-bit buffers are blended; copying back stands in for the blending of floats";
+            let why =
+                "8-bit buffers are blended; copying back stands in for the blending of floats";
             return contradiction(COPY_BACK.info.name, why);
         }
         if settings.covering.image.is_some() && settings.buffer == Buffer::Rgba8 {

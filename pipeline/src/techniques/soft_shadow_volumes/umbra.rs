@@ -44,7 +44,12 @@ impl Umbra<'_> {
             CoverTo::RedGreen => Vec::new(),
             CoverTo::SixBits => {
                 let draws = self.counting(CountTo::Alpha).draws(silhouettes);
-                vec![self.pass(label, self.buffers.targets(), LoadOp::Clear([0.0; 4]), draws)]
+                vec![self.pass(
+                    label,
+                    self.buffers.targets(),
+                    LoadOp::Clear([0.0; 4]),
+                    draws,
+                )]
             }
             CoverTo::Visibility | CoverTo::Copied => self.float_passes(label, silhouettes),
         }
@@ -83,7 +88,9 @@ impl Umbra<'_> {
         load: LoadOp<[f32; 4]>,
         draws: Vec<Draw>,
     ) -> Pass {
-        let tested = draws.iter().any(|d| d.pipeline.depth_stencil != DepthStencilState::default());
+        let tested = draws
+            .iter()
+            .any(|d| d.pipeline.depth_stencil != DepthStencilState::default());
         let depth_stencil = self.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
         let pass = RenderPass {
             label: label.to_owned(),
@@ -98,7 +105,13 @@ impl Umbra<'_> {
         let shader = self.shader(piece, false).stage();
         let state = self.tested(piece);
         let textures = vec![binding(self.positions.texture)];
-        self.draw(piece, Some(shader), ColorTargetState::ADDITIVE, state, textures)
+        self.draw(
+            piece,
+            Some(shader),
+            ColorTargetState::ADDITIVE,
+            state,
+            textures,
+        )
     }
 
     /// Reads visibility as a texture, writes the sum aside, copies it back.

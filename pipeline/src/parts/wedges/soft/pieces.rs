@@ -64,7 +64,9 @@ pub(crate) fn pieces(
         geometry: None,
     });
     let together = |n: usize| if apart { 1 } else { n.max(1) };
-    let caps = silhouettes.near_caps.chunks(together(silhouettes.near_caps.len()));
+    let caps = silhouettes
+        .near_caps
+        .chunks(together(silhouettes.near_caps.len()));
     let edges = silhouettes.edges.iter().filter(|e| e.has_plane());
     let (left, entered): (Vec<&SoftEdge>, Vec<&SoftEdge>) = edges.partition(|e| e.eye_inside);
     let quads = [(1, entered), (-1, left)].into_iter();
@@ -72,7 +74,9 @@ pub(crate) fn pieces(
         .chain(caps.flat_map(|caps| near_caps(view, caps)))
         .chain(quads.flat_map(|(step, edges)| {
             let chunks = edges.chunks(together(edges.len()));
-            let all: Vec<Piece> = chunks.filter_map(|c| quads_piece(view, light, c, step)).collect();
+            let all: Vec<Piece> = chunks
+                .filter_map(|c| quads_piece(view, light, c, step))
+                .collect();
             all
         }))
         .collect()
@@ -107,19 +111,18 @@ fn near_caps(view: &View, caps: &[CapTriangle]) -> [Piece; 2] {
 }
 
 /// Quads at which umbrae are entered, or left, by the side that the eye is on.
-fn quads_piece(
-    view: &View,
-    light: &SoftLight,
-    edges: &[&SoftEdge],
-    entered: i32,
-) -> Option<Piece> {
+fn quads_piece(view: &View, light: &SoftLight, edges: &[&SoftEdge], entered: i32) -> Option<Piece> {
     let (vertices, indices) = quads_of(view, light, edges.iter().copied())?;
     let vertex = HardQuads {
         clip_from_world: view.clip_from_world,
         offsets: light.is_far(),
     };
     Some(Piece {
-        label: if entered > 0 { "quads entered" } else { "quads left" },
+        label: if entered > 0 {
+            "quads entered"
+        } else {
+            "quads left"
+        },
         vertex: vertex.stage(),
         primitive: passes::clamped(),
         entered,

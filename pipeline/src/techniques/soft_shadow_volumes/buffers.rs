@@ -105,7 +105,7 @@ impl Buffers {
             Bytes::Two(both) => (Resolve::SixBits.stage(), both.to_vec()),
             Bytes::One(texture) => (
                 ResolveRedGreen.stage(),
-                vec![texture, positions.texture, targets.depth_stencil],
+                vec![texture, positions.texture, targets.depth_texture()],
             ),
         };
         let pipeline = RenderPipeline {

@@ -120,7 +120,8 @@ impl Technique for SoftShadowVolumes {
             let mut passes = umbra.passes(&quads, &silhouettes);
             passes.extend(volumes.wedge_passes(&label, &silhouettes, warnings));
             passes.extend(umbra.stencil_pass(&quads, &silhouettes));
-            warnings.extend(umbra.warning(&quads, casters.most_layers(light.centre)));
+            let layers = || casters.most_layers(light.centre);
+            warnings.extend(umbra.warning(&quads, layers));
             let resolve = buffers.resolve_pass(turn.label("resolve"), turn.targets, positions);
             passes.extend(resolve.map(|pass| Pass::new(PassRole::Resolve, pass)));
             Ok(passes)

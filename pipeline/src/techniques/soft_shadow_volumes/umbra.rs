@@ -2,12 +2,10 @@
 //! and §4): blended into floats or alphas, copied back one quad after the other, or in
 //! the stencil.
 
-use std::sync::Arc;
-
-use gnomon_raster::shader::{FragmentStage, VertexStage};
+use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{
-    ColorTargetState, CompareFunction, DepthState, DepthStencilState, PrimitiveState,
-    StencilFaceState, StencilOperation, StencilState,
+    ColorTargetState, CompareFunction, DepthState, DepthStencilState, StencilFaceState,
+    StencilOperation, StencilState,
 };
 use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline, TextureBinding, TextureId};
 use gnomon_shaders::soft_volumes::{CountTo, CoverTo, Resolve};
@@ -15,7 +13,7 @@ use gnomon_shaders::visibility_buffers::{QuadCount, QuadTest};
 
 use super::buffers::Buffers;
 use crate::parts::passes::{Targets, View};
-use crate::parts::visibility::{Positions, attachment, binding, full_screen};
+use crate::parts::visibility::{Positions, attachment, binding};
 use crate::parts::wedges::soft::count::Counting;
 use crate::parts::wedges::soft::edges::Silhouettes;
 use crate::parts::wedges::soft::light::SoftLight;
@@ -120,7 +118,7 @@ impl Umbra<'_> {
         let opaque = ColorTargetState::OPAQUE;
         let (shader, state) = (self.shader(piece, true).stage(), self.tested(piece));
         let from = vec![binding(self.positions.texture), binding(visibility)];
-        let add = self.draw(piece, Some(shader), opaque, state.clone(), from);
+        let add = self.draw(piece, Some(shader), opaque, state, from);
         let copy = Some(Resolve::Copy.stage());
         let back = self.draw(piece, copy, opaque, state, vec![binding(aside)]);
         [
@@ -220,9 +218,12 @@ impl Umbra<'_> {
     }
 
     /// Of more layers than the stencil counts.
-    pub(super) fn warning(&self, label: &str, layers: usize) -> Option<Warning> {
-        let in_stencil = self.buffers.cover_to() == CoverTo::RedGreen;
-        (in_stencil && layers > MOST_LAYERS).then(|| Warning {
+    pub(super) fn warning(&self, label: &str, layers: impl FnOnce() -> usize) -> Option<Warning> {
+        if self.buffers.cover_to() != CoverTo::RedGreen {
+            return None;
+        }
+        let layers = layers();
+        (layers > MOST_LAYERS).then(|| Warning {
             code: "umbrae-exceed-stencil",
             count: layers,
             message: format!(

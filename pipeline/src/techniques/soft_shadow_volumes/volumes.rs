@@ -77,10 +77,15 @@ impl LightVolumes<'_> {
         load: LoadOp<[f32; 4]>,
         draws: Vec<(Draw, DrawRole)>,
     ) -> Pass {
+        // A light before this one may have left its count there.
+        let stencil = match self.buffers.cover_to() {
+            CoverTo::RedGreen => LoadOp::Clear(0),
+            _ => LoadOp::Load,
+        };
         let pass = RenderPass {
             label: label.to_owned(),
             color: targets.into_iter().map(|t| attachment(t, load)).collect(),
-            depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            depth_stencil: self.targets.depth_stencil(LoadOp::Load, stencil),
             draws: Vec::new(),
         };
         Pass::with_draws(PassRole::Wedges, pass, draws)

@@ -423,3 +423,33 @@ fn what_is_behind_a_spheres_horizon_hides_nothing() {
     println!("{behind} {before}");
     assert!(behind > 0.999_99 && before < 0.995, "{behind} {before}");
 }
+
+/// Next to the hard edge, where ends come near the light's centre, linear look-ups are
+/// better than nearest ones, as elsewhere: no speckles.
+#[test]
+fn quadlinear_look_ups_do_not_speckle() {
+    for name in ["cylinder", "creature", "parallel-plates"] {
+        let scene = scene(name);
+        let exact = soft(&scene, &[]);
+        let off = |more: &[&str]| {
+            let set = [&["backend=texture4d"], more].concat();
+            let table = soft(&scene, &set);
+            let pairs = exact.visibility.iter().zip(&table.visibility);
+            let off = pairs.map(|(a, b)| f64::from((a - b).abs()));
+            let off: Vec<f64> = off.filter(|d| !d.is_nan()).collect();
+            let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
+            let max = off.iter().copied().fold(0.0, f64::max);
+            println!("{name} {set:?}: RMS {rms:.5} max {max:.4}");
+            (rms, max)
+        };
+        let nearest = off(&[]);
+        for centred in ["texture-centred=cell", "texture-centred=vertex"] {
+            let linear = off(&["texture-filter=quadlinear", centred]);
+            assert!(
+                linear.0 < nearest.0,
+                "{name} {centred}: {linear:?} {nearest:?}"
+            );
+            assert!(linear.1 < 0.25, "{name} {centred}: {linear:?} {nearest:?}");
+        }
+    }
+}

@@ -81,7 +81,9 @@ const TEXTURE_SIZE: Param<u32> = Param::<u32>::whole(
 const TEXTURE_FILTER: Param<TextureFilter> = Param::choice(
     "texture-filter",
     TextureFilter::Nearest.word(),
-    "how the 4D texture is read",
+    "how the 4D texture is read: the nearest entry as the paper, or between sixteen, off the light's \
+     center; under images of sharp contrast both err where an edge passes the center, and more \
+     entries help",
 )
 .when(WITH_TEXTURE);
 

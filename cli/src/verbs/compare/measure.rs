@@ -9,6 +9,7 @@ use gnomon_pipeline::measure::render::{Rendered, render};
 use super::job::{CompareJob, Entry};
 use crate::error::CliError;
 use crate::output::progress::Progress;
+use crate::prepared::prepare;
 
 /// The truth and all techniques.
 pub(super) struct Comparison {
@@ -55,15 +56,23 @@ pub(super) fn run(job: &CompareJob, progress: &Progress) -> Result<Comparison, C
     };
     for entry in &job.entries {
         progress.doing(&entry.label);
-        found.measure(job, entry)?;
+        found.measure(job, entry, progress)?;
         progress.step();
     }
     Ok(found)
 }
 
 impl Comparison {
-    fn measure(&mut self, job: &CompareJob, entry: &Entry) -> Result<(), CliError> {
-        let mut done = render(&job.scene, entry.technique, &entry.params, &job.settings)?;
+    fn measure(
+        &mut self,
+        job: &CompareJob,
+        entry: &Entry,
+        progress: &Progress,
+    ) -> Result<(), CliError> {
+        let (technique, params) = (entry.technique, &entry.params);
+        let ahead = prepare(technique, params, &job.scene, &job.cache, progress)?;
+        let mut done = render(&job.scene, technique, params, &job.settings)?;
+        done.warnings.extend(ahead);
         let under = self.reference.under(&done.depth)?;
         let truth = self.picture_of_truth(job, entry, &under)?;
         let score = Score::measure(&under, &done, &self.shaded[truth].1)?;

@@ -208,8 +208,7 @@ fn compare_knows_the_image_on_the_light() {
         let of = (0, image);
         let truth = Reference::with_light_image(&scene, of, SIZE, kind, None, &|| ()).unwrap();
         let under = truth.under(&done.depth).unwrap();
-        let shown = image.map_or(scene.clone(), |i| scene.with_light_image(i));
-        let picture = shaded(&shown, &truth, &under, &params, &settings()).unwrap();
+        let picture = shaded(&scene, &truth, &under, &params, &settings()).unwrap();
         Score::measure(&under, &done, &picture).unwrap()
     };
     let (own, plain) = (score(Some(&image)), score(None));

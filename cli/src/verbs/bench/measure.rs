@@ -8,6 +8,7 @@ use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
+use gnomon_pipeline::world::light_image::LightImage;
 use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::{GpuConfig, Traffic};
 
@@ -32,6 +33,8 @@ pub(super) struct Bench<'a> {
 struct Truth {
     scene: usize,
     size: [u32; 2],
+    /// What is on the light.
+    image: Option<LightImage>,
     reference: Reference,
 }
 
@@ -48,8 +51,10 @@ impl<'a> Bench<'a> {
     /// what went wrong with its cache.
     pub(super) fn prepare(&mut self, task: &Task) -> Result<Vec<String>, CliError> {
         let (scene, size) = (task.scene, task.cell.size);
+        let entry = &self.suite.entries[task.entry];
+        let image = entry.technique.light_image(&entry.params)?;
         let known = self.truth.as_ref();
-        if known.is_some_and(|t| (t.scene, t.size) == (scene, size)) {
+        if known.is_some_and(|t| (t.scene, t.size, &t.image) == (scene, size, &image)) {
             return Ok(Vec::new());
         }
         let Suite {
@@ -58,9 +63,9 @@ impl<'a> Bench<'a> {
             reference,
             ..
         } = self.suite;
-        let reference = Reference::new(
+        let reference = Reference::with_light_image(
             &scenes[scene].scene,
-            *light,
+            (*light, image.as_ref()),
             size,
             *reference,
             Some(&self.cache),
@@ -70,6 +75,7 @@ impl<'a> Bench<'a> {
         self.truth = Some(Truth {
             scene,
             size,
+            image,
             reference,
         });
         Ok(warnings)

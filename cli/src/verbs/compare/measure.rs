@@ -1,6 +1,5 @@
 //! Renders the techniques and measures them.
 
-use std::borrow::Cow;
 use std::time::Instant;
 
 use gnomon_pipeline::measure::comparison::{Aligned, Origin, Reference, Score, ShadingKey, shaded};
@@ -98,11 +97,13 @@ impl Comparison {
         if let Some(known) = self.shaded.iter().position(|(k, _)| *k == key) {
             return Ok(known);
         }
-        let scene = match &job.image {
-            Some(image) => Cow::Owned(job.scene.with_light_image(image)),
-            None => Cow::Borrowed(&job.scene),
-        };
-        let picture = shaded(&scene, &self.reference, under, &entry.params, &job.settings)?;
+        let picture = shaded(
+            &job.scene,
+            &self.reference,
+            under,
+            &entry.params,
+            &job.settings,
+        )?;
         self.shaded.push((key, picture));
         Ok(self.shaded.len() - 1)
     }

@@ -43,6 +43,8 @@ pub(super) struct Found {
     pub(super) tried: usize,
     /// Candidates that refused the scene.
     pub(super) refused: usize,
+    /// What went wrong with the folder that keeps truth and preparations.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Searches.
@@ -50,9 +52,11 @@ pub(super) fn search(job: &TuneJob) -> Result<Found, CliError> {
     let mut names = BTreeSet::new();
     let mut candidates = stars(&job.techniques);
     let (mut measured, mut refused) = (Vec::new(), 0);
+    let mut warnings = Vec::new();
     let mut stage = Stage::new(job, STAGES[0].0)?;
     for (number, (share, repeat)) in STAGES.into_iter().enumerate() {
         if number > 0 {
+            warnings.append(&mut stage.warnings);
             stage = Stage::new(job, share)?;
         }
         let mut pace = Pace::new(candidates.len());
@@ -80,12 +84,14 @@ pub(super) fn search(job: &TuneJob) -> Result<Found, CliError> {
         }
     }
     measured.sort_by(|a, b| job.budget.order(&a.figures, &b.figures, 1.0));
-    let (winner, others) = verify(job, &stage, measured)?;
+    let (winner, others) = verify(job, &mut stage, measured)?;
+    warnings.append(&mut stage.warnings);
     Ok(Found {
         winner,
         others,
         tried: names.len(),
         refused,
+        warnings,
     })
 }
 
@@ -123,7 +129,7 @@ fn survivors(measured: &[Tried], budget: &Budget, growth: f64) -> Vec<Candidate>
 /// The first that keeps the budget when it is measured anew, and what follows it.
 fn verify(
     job: &TuneJob,
-    stage: &Stage<'_>,
+    stage: &mut Stage<'_>,
     measured: Vec<Tried>,
 ) -> Result<(Option<Tried>, Vec<Tried>), CliError> {
     for (k, tried) in measured.iter().enumerate() {

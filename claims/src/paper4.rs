@@ -4,7 +4,8 @@
 use super::paper3_scaling as scaling;
 use super::paper4_quality as quality;
 use super::shader_work::{
-    paper3_exact, paper3_table, paper4_arithmetic, paper4_sphere, paper4_tables, published,
+    paper3_exact, paper3_table, paper4_arithmetic, paper4_sphere, paper4_tables, paper4_textured,
+    published,
 };
 use super::tally::{bytes_of, counters, invocations, pass_time, ratio};
 use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict, paper3};
@@ -127,6 +128,7 @@ fn instructions(_: &mut Lab) -> Result<Finding, ReproduceError> {
     let fewer = |before: Operations, after: Operations| ratio(before.operations, after.operations);
     let [exact, table] = [paper3_exact(), paper3_table()];
     let [computed, tables, sphere] = [paper4_arithmetic(), paper4_tables(), paper4_sphere()];
+    let textured = paper4_textured();
     let count = |what: &str, theirs: &'static str, ours: u64| {
         Measure::beside(format!("our {what}"), theirs, ours as f64, Unit::Count)
     };
@@ -153,6 +155,8 @@ fn instructions(_: &mut Lab) -> Result<Finding, ReproduceError> {
             count("operations, IV computed", "-", computed.operations),
             count("operations, IV tables, rectangle", "60", tables.operations),
             count("operations, IV tables, sphere", "59", sphere.operations),
+            count("operations, IV textured", "61", textured.operations),
+            count("look-ups, textured", "2", textured.look_ups),
             count("look-ups, rectangle", "5", tables.look_ups),
             count("look-ups, sphere", "4", sphere.look_ups),
             Measure::beside(

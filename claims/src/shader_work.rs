@@ -9,6 +9,7 @@ use gnomon_raster::shader::Operations;
 use gnomon_shaders::coverage::{FlatLight, Image, Projector, SphereLight};
 use gnomon_shaders::coverage_table::CoverageTable;
 use gnomon_shaders::soft_volumes::{CoverTo, Covering, ExactCoverage, HardPlane, Penumbra};
+use gnomon_shaders::split_volumes::textured::SplitTextured;
 use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
 
 /// A light that shaders project on: what they do depends on its kind alone.
@@ -89,6 +90,22 @@ pub(super) fn paper4_sphere() -> Operations {
     paper4(sphere(), LOOKED_UP)
 }
 
+/// Paper IV, 4D texture, rectangle.
+pub(super) fn paper4_textured() -> Operations {
+    Operations::of(&SplitTextured {
+        light: rectangle(),
+        covering: CoverageTable {
+            size: 32,
+            linear: false,
+            vertex_centred: false,
+        },
+        edge: [[0.0; 3]; 2],
+        plane: plane(),
+        halves: Halves::Both,
+        colors: 1,
+    })
+}
+
 /// The papers' own figures: instructions with texture loads (paper III, §4; paper
 /// IV, §6).
 pub(super) mod published {
@@ -110,6 +127,7 @@ mod tests {
         assert_eq!(paper4_arithmetic().look_ups, 1);
         assert_eq!(paper4_tables().look_ups, 5);
         assert_eq!(paper4_sphere().look_ups, 5);
+        assert_eq!(paper4_textured().look_ups, 2);
     }
 
     /// With the closed form besides, tables would take half as many operations more.

@@ -117,8 +117,13 @@ stages! {
         soft_volumes::HardCount: "soft-volumes.hard-count" 1,
         soft_volumes::Resolve: "soft-volumes.resolve" 1,
         soft_volumes::Penumbra<soft_volumes::ExactCoverage>: "soft-volumes.penumbra-exact" 1,
-        soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 1,
+        soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 2,
+        soft_volumes::Penumbra<coverage_table::BlendedTables>: "soft-volumes.penumbra-blended" 1,
         split_volumes::SplitPenumbra: "split-volumes.penumbra" 1,
+        split_volumes::textured::SplitTextured<coverage_table::CoverageTable>:
+            "split-volumes.textured-table" 1,
+        split_volumes::textured::SplitTextured<coverage_table::BlendedTables>:
+            "split-volumes.textured-blended" 1,
         split_volumes::resolve::ResolveSplit: "split-volumes.resolve" 1,
         penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 1,
         penumbra::inside::WedgeInside: "penumbra.wedge-inside" 1,
@@ -180,6 +185,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 59);
+        assert_eq!(table.fragment_shaders().count(), 62);
     }
 }

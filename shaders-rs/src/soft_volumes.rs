@@ -15,7 +15,7 @@ use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
 use crate::coverage::outlined;
 use crate::coverage::{Edge, Projector, Segment, clip, covered};
-use crate::coverage_table::CoverageTable;
+use crate::coverage_table::{BlendedTables, CoverageTable};
 use crate::transform::{ClipFromWorld, FullScreen};
 
 /// The first `N` textures at the fragment's own pixel; zero beyond `count`. One
@@ -291,6 +291,21 @@ impl Covering for ExactCoverage {
 
 impl Covering for CoverageTable {
     const TEXTURES: usize = 3;
+
+    #[inline(always)]
+    fn share<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        _: &Projector,
+        segment: &Segment<L>,
+    ) -> [F32<L>; 3] {
+        self.look_up(l, f, 2, segment)
+    }
+}
+
+impl Covering for BlendedTables {
+    const TEXTURES: usize = 4;
 
     #[inline(always)]
     fn share<L: Lanes>(

@@ -7,6 +7,7 @@ mod common;
 mod compare;
 mod draws;
 mod environment;
+mod light_images;
 mod overlays;
 mod pixel;
 mod render;

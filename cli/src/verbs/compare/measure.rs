@@ -1,5 +1,6 @@
 //! Renders the techniques and measures them.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use gnomon_pipeline::measure::comparison::{Aligned, Origin, Reference, Score, ShadingKey, shaded};
@@ -34,9 +35,9 @@ pub(super) struct Measured {
 pub(super) fn run(job: &CompareJob, progress: &Progress) -> Result<Comparison, CliError> {
     progress.doing("computing the truth");
     let start = Instant::now();
-    let reference = Reference::new(
+    let reference = Reference::with_light_image(
         &job.scene,
-        job.light,
+        (job.light, job.image.as_ref()),
         job.settings.size,
         job.reference,
         Some(&job.cache),
@@ -88,13 +89,11 @@ impl Comparison {
         if let Some(known) = self.shaded.iter().position(|(k, _)| *k == key) {
             return Ok(known);
         }
-        let picture = shaded(
-            &job.scene,
-            &self.reference,
-            under,
-            &entry.params,
-            &job.settings,
-        )?;
+        let scene = match &job.image {
+            Some(image) => Cow::Owned(job.scene.with_light_image(image)),
+            None => Cow::Borrowed(&job.scene),
+        };
+        let picture = shaded(&scene, &self.reference, under, &entry.params, &job.settings)?;
         self.shaded.push((key, picture));
         Ok(self.shaded.len() - 1)
     }

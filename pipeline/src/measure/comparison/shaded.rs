@@ -38,6 +38,7 @@ pub fn shaded(
     let technique = GivenVisibility {
         light: reference.light,
         values: &under.for_shading,
+        others: under.other_colours.as_ref(),
     };
     let settings = RenderSettings {
         repeat: 1,

@@ -32,6 +32,7 @@ use crate::technique::{
     Capabilities, Condition, Frame, Param, ParamInfo, Params, Pass, PassRole, SceneWedges,
     ShadowKind, Technique, TechniqueError, WedgeUse,
 };
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
 use crate::{choices, param_list};
 use buffers::Buffers;
@@ -99,7 +100,7 @@ impl Technique for SoftShadowVolumes {
     }
 
     fn summary(&self) -> &'static str {
-        "soft shadows of rectangles, discs and spheres by penumbra wedges (paper III)"
+        "soft shadows of rectangles, discs, spheres and polygons by penumbra wedges (paper III)"
     }
 
     fn params(&self) -> &'static [ParamInfo] {
@@ -129,6 +130,7 @@ impl Technique for SoftShadowVolumes {
         let settings = SoftVolumesSettings::read(params)?;
         let soft = settings.soft;
         let has_image = settings.covering.image.is_some();
+        let scene = &*settings.covering.lit(scene);
         let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
         let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
@@ -159,6 +161,10 @@ impl Technique for SoftShadowVolumes {
             passes.extend(resolve.map(|pass| Pass::new(PassRole::Resolve, pass)));
             Ok(passes)
         })
+    }
+
+    fn light_image(&self, params: &Params) -> Result<Option<LightImage>, TechniqueError> {
+        Ok(CoveringSettings::read(params)?.light_image())
     }
 
     fn wedges(

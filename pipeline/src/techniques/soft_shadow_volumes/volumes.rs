@@ -170,7 +170,7 @@ impl LightVolumes<'_> {
     /// Positions, `second`, and the coverage table where there is one.
     fn bindings(&self, second: TextureId) -> Vec<TextureBinding> {
         let mut slots = vec![binding(self.positions.texture), binding(second)];
-        slots.extend(self.covering.texture().map(binding));
+        slots.extend(self.covering.textures().map(binding));
         slots
     }
 }

@@ -6,7 +6,6 @@ pub(crate) mod covering;
 pub(crate) mod edges;
 pub(crate) mod halves;
 pub(crate) mod light;
-pub(crate) mod light_image;
 pub(crate) mod loops;
 mod ranges;
 pub(crate) mod settings;

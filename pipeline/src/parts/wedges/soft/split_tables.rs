@@ -10,6 +10,7 @@ use gnomon_raster::{
 use gnomon_shaders::coverage::Image;
 use gnomon_shaders::split_volumes::{ANGLE_SIDE, AREA_SIDE, FULL, HALF_TURN, SPLIT_ENTRIES};
 
+use super::table::polygon_image;
 use crate::technique::TechniqueError;
 
 /// All three textures, in the order of the shader's slots 1 to 3.
@@ -63,10 +64,10 @@ fn angles(recording: &mut Recording) -> Result<TextureId, TechniqueError> {
 
 /// Twice the share of the light between the rays at two angles, on the side where
 /// they are less than half a turn apart. 16 bits (a half float) for discs, 8 for
-/// squares.
+/// squares and polygons.
 fn areas(image: Image, recording: &mut Recording) -> Result<TextureId, TechniqueError> {
     let format = match image {
-        Image::Square => Format::R8Unorm,
+        Image::Square | Image::Polygon(_) => Format::R8Unorm,
         Image::Disc => Format::R16Float,
     };
     let desc = TextureDescriptor::d2("areas", format, AREA_SIDE, AREA_SIDE);
@@ -85,11 +86,13 @@ fn areas(image: Image, recording: &mut Recording) -> Result<TextureId, Technique
 fn share_between(image: Image, from: f64, to: f64) -> f64 {
     let turn = (to - from).abs();
     let turn = turn.min(2.0 * PI - turn);
+    let ray = |a: f64| DVec2::new(libm::cos(a), libm::sin(a));
     match image {
         Image::Disc => turn / (2.0 * PI),
-        Image::Square => {
-            let ray = |a: f64| DVec2::new(libm::cos(a), libm::sin(a));
-            crate::geometry::coverage::square_share(ray(from), ray(to))
+        Image::Square => crate::geometry::coverage::square_share(ray(from), ray(to)),
+        Image::Polygon(outline) => {
+            let polygon = polygon_image(&outline);
+            polygon.sector(ray(from), ray(to)) / polygon.area()
         }
     }
 }

@@ -23,11 +23,15 @@ pub struct CoverageTable {
     /// The first and last entries are on the light's border; else entries are at
     /// the centres of `size` equal cells.
     pub vertex_centred: bool,
+    /// Entries hold the share, and not twice the share: colours in 8 bits, of which all
+    /// may be covered.
+    pub whole: bool,
 }
 uniforms!(CoverageTable {
     size,
     linear,
-    vertex_centred
+    vertex_centred,
+    whole
 });
 
 /// Coverage between two images of a light, one texture for each: lights add up, and so do
@@ -124,10 +128,11 @@ impl CoverageTable {
             self.place(q[1]),
         ];
         let zero = F32::splat(l, 0.0);
-        let twice = self.filtered(l, f, slot, places);
+        let entry = self.filtered(l, f, slot, places);
+        let scale = if self.whole { 1.0 } else { 0.5 };
         each3(
             #[inline(always)]
-            |i| segment.some.select_f32(twice[i] * 0.5, zero),
+            |i| segment.some.select_f32(entry[i] * scale, zero),
         )
     }
 

@@ -16,6 +16,7 @@
 //! * [`smoothies`]: geometry that softens the edges of shadow maps
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
+//! * [`visibility_buffers`]: paper III's float buffer without blending, and its 8-bit one
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
 //!
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
@@ -44,6 +45,7 @@ pub mod split_volumes;
 pub mod surface;
 pub mod transform;
 mod vector;
+pub mod visibility_buffers;
 
 use gnomon_raster::shader::{FragmentStage, Named, ShaderTable, ShaderTableError, VertexStage};
 
@@ -116,6 +118,8 @@ stages! {
         surface::ShadowedByBytes<surface::Phong>: "surface.shadowed-by-bytes-phong" 1,
         soft_volumes::HardCount: "soft-volumes.hard-count" 1,
         soft_volumes::Resolve: "soft-volumes.resolve" 1,
+        visibility_buffers::QuadCount: "visibility-buffers.quad-count" 1,
+        visibility_buffers::ResolveRedGreen: "visibility-buffers.resolve-red-green" 1,
         soft_volumes::Penumbra<soft_volumes::ExactCoverage>: "soft-volumes.penumbra-exact" 1,
         soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 2,
         soft_volumes::Penumbra<coverage_table::BlendedTables>: "soft-volumes.penumbra-blended" 1,

@@ -115,6 +115,16 @@ fn umbra_side<L: Lanes>(l: L, normal: [F32<L>; 3], offset: F32<L>, from: [F32<L>
     (dot3(normal, from) + offset).lt(F32::splat(l, 0.0))
 }
 
+/// The predicate for the plane in the varyings of [`HardQuads`].
+#[inline(always)]
+pub(crate) fn umbra_side_of<L: Lanes>(l: L, f: &mut Fragment<'_, L>, from: [F32<L>; 3]) -> Mask<L> {
+    let normal = each3(
+        #[inline(always)]
+        |i| f.varying(i),
+    );
+    umbra_side(l, normal, f.varying(4), from)
+}
+
 /// Attributes: homogeneous position, normal of the quad's [`HardPlane`], 1 where the
 /// eye is on its umbra side, else 0, and its offset where there are `offsets`. Five
 /// flat varyings.
@@ -248,8 +258,11 @@ pub enum CoverTo {
     Copied,
     /// Coverage in 6 of 8 bits to attachment 0 on the umbra side, else to 1.
     SixBits,
+    /// The same of one colour, to red of attachment 0 on the umbra side, else to green
+    /// (paper III, §4.2).
+    RedGreen,
 }
-uniforms!(enum CoverTo { 0: Visibility, 1: Copied, 2: SixBits });
+uniforms!(enum CoverTo { 0: Visibility, 1: Copied, 2: SixBits, 3: RedGreen });
 
 /// Largest coverage in 6 of 8 bits: four of them always fit.
 pub const SIX_BITS: f32 = 63.0;
@@ -381,6 +394,12 @@ impl<C: Covering> FragmentShader for Penumbra<C> {
                 );
                 f.set_color(0, [add[0], add[1], add[2], zero]);
                 f.set_color(1, [take[0], take[1], take[2], zero]);
+            }
+            CoverTo::RedGreen => {
+                let bits = (share[0] * SIX_BITS).round_ties_even() / 255.0;
+                let add = inside.select_f32(bits, zero);
+                let take = inside.select_f32(zero, bits);
+                f.set_color(0, [add, take, zero, zero]);
             }
         }
     }

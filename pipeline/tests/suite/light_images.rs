@@ -255,3 +255,35 @@ fn only_rectangles_have_images() {
     let message = refused.err().unwrap().to_string();
     assert!(message.contains("rectangles for light-image"), "{message}");
 }
+
+/// Green and blue are covered as their own half of the light is, red as the other.
+#[test]
+fn green_and_blue_are_covered_apart_from_red() {
+    let mut scene = plates();
+    scene.ambient = [0.0; 3];
+    let done = drawn(&scene, &["light-image=halves"]);
+    let technique = find("unshadowed").unwrap();
+    let none = Params::defaults(technique);
+    let lit = render(&scene, technique, &none, &settings()).unwrap();
+    let image = LightImage::halves();
+    for (colour, other) in [(0, 1), (1, 0), (2, 0)] {
+        let truth = |c| VisibilityImage::of_light_image(&scene, 0, (&image, c), SIZE, &|| ());
+        let [own, wrong] = [colour, other].map(|c| truth(c).unwrap().values);
+        let share = |k: usize| done.color[k][colour] / lit.color[k][colour];
+        let seen: Vec<usize> = (0..own.len())
+            .filter(|k| !own[*k].is_nan() && lit.color[*k][colour] > 0.01)
+            .collect();
+        let off = |truth: &[f64]| {
+            let squares = seen
+                .iter()
+                .map(|k| (f64::from(share(*k)) - truth[*k]).powi(2));
+            (squares.sum::<f64>() / seen.len() as f64).sqrt()
+        };
+        let (right, swapped) = (off(&own), off(&wrong));
+        println!("{colour}: {right} {swapped}");
+        assert!(
+            seen.len() > 1000 && right < 0.02 && swapped > 0.1,
+            "{right} {swapped}"
+        );
+    }
+}

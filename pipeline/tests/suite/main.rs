@@ -25,6 +25,7 @@ mod moment_maps;
 mod near_plane;
 mod open_casters;
 mod outlines;
+mod paper3_buffers;
 mod penumbra_wedges;
 mod planar;
 mod polygon_lights;

@@ -82,7 +82,9 @@ impl ImageSums {
     pub fn covered(&self, p: &Spoke, q: &Spoke) -> [f64; 3] {
         let turn = p.point.perp_dot(q.point);
         if turn == 0.0 {
-            return [0.0; 3];
+            // Through the centre, half of the light is on either side: their mean.
+            let opposite = p.point.dot(q.point) < 0.0;
+            return [if opposite { 0.5 } else { 0.0 }; 3];
         }
         let (p, q) = if turn > 0.0 { (p, q) } else { (q, p) };
         let round = if q.swept < p.swept { 1.0 } else { 0.0 };
@@ -247,6 +249,15 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn edges_through_the_centre_cover_half() {
+        let [p, q] = [DVec2::new(0.75, 0.25), DVec2::new(-0.375, -0.125)];
+        assert_eq!(covered(&white(4), p, q), [0.5; 3]);
+        assert_eq!(covered(&white(4), p, -q), [0.0; 3]);
+        let beside = q + DVec2::new(1e-9, 0.0);
+        assert!((covered(&white(4), p, beside)[0] - 0.5).abs() < 1e-8);
     }
 
     #[test]

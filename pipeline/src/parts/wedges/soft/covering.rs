@@ -83,7 +83,9 @@ const TEXTURE_SIZE: Param<u32> = Param::<u32>::whole(
 const TEXTURE_FILTER: Param<TextureFilter> = Param::choice(
     "texture-filter",
     TextureFilter::Nearest.word(),
-    "how the 4D texture is read",
+    "how the 4D texture is read: the nearest entry as the paper, or between sixteen, off the light's \
+     center; under images of sharp contrast both err where an edge passes the center, and more \
+     entries help",
 )
 .when(WITH_TEXTURE);
 
@@ -96,6 +98,28 @@ const TEXTURE_CENTRED: Param<TextureCentred> = Param::choice(
 
 /// Names of built-in images.
 const IMAGES: &[&str] = &["white", "halves", "windows", "fire"];
+
+choices! {
+    /// What a coloured texture holds.
+    enum TextureBits {
+        /// Half floats.
+        Sixteen = "16",
+        /// Bytes.
+        Eight = "8",
+    }
+}
+
+const TEXTURE_BITS: Param<TextureBits> = Param::choice(
+    "texture-bits",
+    TextureBits::Sixteen.word(),
+    "bits of a color in the 4D texture of an image: half floats, or 8 as the paper's; without an \
+     image they are 8",
+)
+.unit("bits")
+.when(Condition::All(&[
+    EXTENDED,
+    Condition::Not("light-image", &["white"]),
+]));
 
 const LIGHT_IMAGE: Param<LightSequence> = Param::images(
     IMAGES,
@@ -131,6 +155,7 @@ impl CoveringSettings {
         TEXTURE_SIZE.info,
         TEXTURE_FILTER.info,
         TEXTURE_CENTRED.info,
+        TEXTURE_BITS.info,
         LIGHT_IMAGE.info,
         FRAME.info,
     ];
@@ -159,6 +184,7 @@ impl CoveringSettings {
                 size: params.get(&TEXTURE_SIZE)?,
                 linear: params.get(&TEXTURE_FILTER)? == TextureFilter::Quadlinear,
                 vertex_centred: params.get(&TEXTURE_CENTRED)? == TextureCentred::Vertex,
+                whole: image.is_some() && params.get(&TEXTURE_BITS)? == TextureBits::Eight,
             },
             image: image.map(|sequence| sequence.at(frame)),
         })

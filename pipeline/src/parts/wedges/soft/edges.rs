@@ -9,6 +9,7 @@
 use glam::DVec3;
 
 use crate::geometry::caster::CasterPolicy;
+use crate::geometry::layers::most_layers;
 use crate::geometry::outlines::pieces;
 use crate::geometry::silhouette::{Orientation, Silhouette};
 use crate::geometry::slivers::{Slivers, facing};
@@ -72,6 +73,14 @@ impl<'a> SoftCasters<'a> {
         let bounds = self.examined.iter().filter_map(|e| e.object.mesh.bounds());
         let sizes = bounds.map(|(low, high)| (high - low).length());
         sizes.reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+
+    /// How many umbrae may lie over one another, of the light at `centre`.
+    pub(crate) fn most_layers(&self, centre: DVec3) -> usize {
+        let light = HardLight::Point(centre);
+        let volume = |e: &Examined<'_>| e.caster.volume(&e.object.mesh, light);
+        let volumes: Vec<ShadowVolume> = self.examined.iter().map(volume).collect();
+        most_layers(light, &volumes.iter().collect::<Vec<_>>())
     }
 
     /// Silhouettes seen from `centre`, of all casters together.

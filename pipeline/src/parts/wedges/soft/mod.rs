@@ -7,6 +7,7 @@ pub(crate) mod edges;
 pub(crate) mod halves;
 pub(crate) mod light;
 pub(crate) mod loops;
+pub(crate) mod pieces;
 mod ranges;
 pub(crate) mod settings;
 pub(crate) mod split_tables;

@@ -17,8 +17,8 @@ use crate::world::memo::Memo;
 pub(crate) enum Contents<'a> {
     /// One colour, of any shape: 8 bits.
     Plain(Image),
-    /// An image on a rectangle: three half floats and one unused, since a colour in
-    /// one part of the light can be covered altogether.
+    /// An image on a rectangle: three half floats, or bytes of the share itself, since a
+    /// colour in one part of the light can be covered altogether; and one unused.
     Coloured(&'a LightImage),
 }
 
@@ -31,6 +31,7 @@ pub(crate) fn create(
     let side = table.size * table.size;
     let format = match contents {
         Contents::Plain(_) => Format::R8Unorm,
+        Contents::Coloured(_) if table.whole => Format::Rgba8Unorm,
         Contents::Coloured(_) => Format::Rgba16Float,
     };
     let desc = TextureDescriptor::d2("coverage", format, side, side);
@@ -42,7 +43,7 @@ pub(crate) fn create(
 /// Entries of images, of which videos show the same ones again.
 static IMAGES: Memo<Vec<[f32; 4]>> = Memo::new(256 << 20);
 
-/// Twice the covered share, in the order of the texture's rows.
+/// Twice the covered share, or the share, in the order of the texture's rows.
 fn entries(table: &CoverageTable, contents: &Contents<'_>) -> Arc<Vec<[f32; 4]>> {
     match contents {
         Contents::Plain(image) => Arc::new(plain(table, *image)),
@@ -57,7 +58,7 @@ fn entries(table: &CoverageTable, contents: &Contents<'_>) -> Arc<Vec<[f32; 4]>>
 fn key(table: &CoverageTable, image: &LightImage) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&table.size.to_le_bytes());
-    hasher.update(&[u8::from(table.vertex_centred)]);
+    hasher.update(&[table.vertex_centred, table.whole].map(u8::from));
     for v in image.cells().iter().flatten() {
         hasher.update(&v.to_bits().to_le_bytes());
     }
@@ -86,11 +87,12 @@ fn filled<P>(
     let rows = (0..n).flat_map(|y| (0..n).map(move |x| DVec2::new(at(x), at(y))));
     let points: Vec<P> = rows.map(prepare).collect();
     let point = |x: u32, y: u32| &points[(y * n + x) as usize];
+    let scale = if table.whole { 1.0 } else { 2.0 };
     let mut texels = Vec::with_capacity((n * n * n * n) as usize);
     for row in 0..n * n {
         for column in 0..n * n {
             let (p, q) = (point(column % n, row % n), point(column / n, row / n));
-            let [r, g, b] = share(p, q).map(|v| 2.0 * v as f32);
+            let [r, g, b] = share(p, q).map(|v| scale * v as f32);
             texels.push([r, g, b, 1.0]);
         }
     }

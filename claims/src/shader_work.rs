@@ -56,6 +56,7 @@ pub(super) fn paper3_table() -> Operations {
         size: 32,
         linear: false,
         vertex_centred: false,
+        whole: false,
     })
 }
 
@@ -98,6 +99,7 @@ pub(super) fn paper4_textured() -> Operations {
             size: 32,
             linear: false,
             vertex_centred: false,
+            whole: false,
         },
         edge: [[0.0; 3]; 2],
         plane: plane(),

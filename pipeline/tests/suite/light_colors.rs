@@ -28,7 +28,13 @@ fn channels(scene: &Scene, technique: &str, set: &[&str]) -> [Vec<f32>; 3] {
     let texels = texture.read_color(Subresource::default()).unwrap();
     [0, 1, 2].map(|c| {
         let pairs = texels.iter().zip(&seen);
-        let value = pairs.map(|(t, v)| if v.is_nan() { *v } else { t.0[c].clamp(0.0, 1.0) });
+        let value = pairs.map(|(t, v)| {
+            if v.is_nan() {
+                *v
+            } else {
+                t.0[c].clamp(0.0, 1.0)
+            }
+        });
         value.collect()
     })
 }
@@ -51,7 +57,10 @@ fn each_color_is_seen_of_its_own_half() {
     let halves = [-1.0, 1.0].map(|side| under_half(&scene, side));
     let set = [&["light-image=halves"], &EVEN[..]].concat();
     // The float's texture, and 8 bits of visibility besides.
-    for (technique, limit) in [("soft-shadow-volumes", 2e-3), (OPTIMISED, 2e-3 + 0.5 / 255.0)] {
+    for (technique, limit) in [
+        ("soft-shadow-volumes", 2e-3),
+        (OPTIMISED, 2e-3 + 0.5 / 255.0),
+    ] {
         let colours = channels(&scene, technique, &set);
         for (channel, of) in [(0, 0), (1, 1), (2, 1)] {
             let error = |of: usize| {
@@ -77,7 +86,9 @@ fn one_colored_textures_are_read_alike_in_both() {
         for halves in ["halves=off", "halves=on"] {
             let four = drawn(&scene, OPTIMISED, &[&set[..], &[halves]].concat(), SIZE);
             let pairs = three.visibility.iter().zip(&four.visibility);
-            let off = pairs.filter(|(a, _)| !a.is_nan()).map(|(a, b)| (a - b).abs());
+            let off = pairs
+                .filter(|(a, _)| !a.is_nan())
+                .map(|(a, b)| (a - b).abs());
             let worst = off.fold(0.0, f32::max);
             println!("{filter} {halves}: {worst}");
             // A few dozen edges, each rounded to 1/4095.
@@ -99,7 +110,11 @@ fn images_go_with_all_but_split_lights() {
         assert_eq!(bits(&plain[channel]), bits(&by_halves[channel]));
     }
     let combined = channels(&scene, OPTIMISED, &[image, "combine=paper"]);
-    let lighter = plain[2].iter().zip(&combined[2]).filter(|(a, b)| b > a).count();
+    let lighter = plain[2]
+        .iter()
+        .zip(&combined[2])
+        .filter(|(a, b)| b > a)
+        .count();
     assert!(lighter > 20, "{lighter}");
     let params = Params::parse(technique, [image, "split=2"]).unwrap();
     let refused = technique.frame(&scene, SIZE, &params).err().unwrap();

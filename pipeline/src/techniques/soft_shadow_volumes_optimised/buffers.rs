@@ -168,7 +168,7 @@ impl Buffers {
         if to != self.visibility.texture || self.colours.len() == 1 {
             return ColorWrites::ALL;
         }
-        [ColorWrites::RED, ColorWrites::GREEN, ColorWrites::BLUE][colour]
+        ColorWrites(1 << colour)
     }
 }
 

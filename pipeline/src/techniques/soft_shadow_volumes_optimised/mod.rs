@@ -100,7 +100,7 @@ impl Technique for SoftShadowVolumesOptimised {
         let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
         let (mut frame, positions) = frame.with_positions()?;
         let depth_stencil = frame.targets.depth_texture();
-        let mut buffers = Buffers::create(size, depth_stencil, soft.horizon, &mut frame.recording)?;
+        let mut buffers = Buffers::create(size, depth_stencil, &settings, &mut frame.recording)?;
         let mut lookups = Lookups::default();
         frame.lit(LitTest::Visibility(buffers.visibility()), |turn| {
             let (light, number) = (turn.light(), turn.number);

@@ -6,6 +6,7 @@ use gnomon_pipeline::techniques::Registry;
 use crate::error::CliError;
 use crate::flags::ListArgs;
 use crate::verbs;
+use crate::verbs::bench::BenchArgs;
 use crate::verbs::bisect::BisectArgs;
 use crate::verbs::compare::CompareArgs;
 use crate::verbs::debug::DebugArgs;
@@ -13,6 +14,7 @@ use crate::verbs::demo::DemoArgs;
 use crate::verbs::diff::DiffArgs;
 use crate::verbs::dump::DumpArgs;
 use crate::verbs::info::InfoArgs;
+use crate::verbs::light::LightArgs;
 use crate::verbs::pixel::PixelArgs;
 use crate::verbs::profiles::ProfilesArgs;
 use crate::verbs::record::RecordArgs;
@@ -22,6 +24,8 @@ use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
+use crate::verbs::tune::TuneArgs;
+use crate::verbs::wedge::WedgeArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
 #[derive(Debug, Parser)]
@@ -42,6 +46,10 @@ pub(crate) enum Verb {
     Render(Box<RenderArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
+    /// Measure error, time and bytes over scenes, techniques and their parameters
+    Bench(Box<BenchArgs>),
+    /// Find the technique and parameters that keep a budget of error, time or bytes
+    Tune(Box<TuneArgs>),
     /// Show where a frame's work and bytes go, as one page to look at
     Report(Box<ReportArgs>),
     /// Record frames of a scene in a trace, to be replayed and looked into
@@ -68,6 +76,10 @@ pub(crate) enum Verb {
     Traffic(TrafficArgs),
     /// List the profiles of hardware, or show where their values are from
     Profiles(ProfilesArgs),
+    /// Show a light as a pixel's surface sees it, and the edges that add up to its visibility
+    Light(LightArgs),
+    /// Show the penumbra wedge of one silhouette edge, and what the edge covers
+    Wedge(WedgeArgs),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -79,6 +91,7 @@ impl Verb {
     pub(crate) fn run(&self, registry: &Registry) -> Result<(), CliError> {
         match self {
             Self::Compare(args) => verbs::compare::run(args, registry),
+            Self::Bench(args) => verbs::bench::run(args, registry),
             Self::Bisect(args) => verbs::bisect::run(args),
             Self::Demo(args) => verbs::demo::run(args),
             Self::Diff(args) => verbs::diff::run(args),
@@ -90,11 +103,14 @@ impl Verb {
             Self::Record(args) => verbs::record::run(args, registry),
             Self::Replay(args) => verbs::replay::run(args),
             Self::Info(args) => verbs::info::run(args),
+            Self::Light(args) => verbs::light::run(args),
+            Self::Wedge(args) => verbs::wedge::run(args),
             Self::Dump(args) => verbs::dump::run(args),
             Self::Trim(args) => verbs::trim::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),
+            Self::Tune(args) => verbs::tune::run(args, registry),
             Self::Traffic(args) => verbs::traffic::run(args),
         }
     }

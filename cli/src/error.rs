@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use gnomon_claims::{ReproduceError, UnknownClaim};
 use gnomon_pipeline::measure::comparison::CompareError;
 use gnomon_pipeline::measure::render::RenderError;
+use gnomon_pipeline::measure::visibility_sum::SumError;
 use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::truth::metrics::MetricError;
 use gnomon_pipeline::world::scene::SceneError;
@@ -98,6 +99,22 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
+    /// Something of a suite of measurements is wrong, at a flag or a line.
+    #[error("{place}: {problem}")]
+    Suite {
+        /// The flag, or file and line.
+        place: String,
+        /// What is wrong, and what would be valid.
+        problem: String,
+    },
+    /// Results of measurements cannot be used.
+    #[error("{}: {problem}", .path.display())]
+    Results {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// Something of a trace cannot be had.
     #[error("{}: {source}", .path.display())]
     InTrace {
@@ -109,6 +126,9 @@ pub(crate) enum CliError {
     /// No cause of a difference is found.
     #[error(transparent)]
     Bisect(#[from] gnomon_traces::BisectError),
+    /// A light's visibility is not added up from edges.
+    #[error(transparent)]
+    Sum(#[from] SumError),
     /// The GPU refuses a frame.
     #[error(transparent)]
     Gpu(#[from] gnomon_raster::Error),

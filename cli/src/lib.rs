@@ -9,6 +9,7 @@ mod error;
 mod flags;
 mod output;
 mod overlay;
+mod prepared;
 mod threads;
 mod traces;
 mod verbs;

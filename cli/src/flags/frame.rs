@@ -1,13 +1,18 @@
 //! Which frames: a scene, a technique, a size, a time.
 
+use std::path::PathBuf;
+
 use clap::Args;
-use gnomon_pipeline::technique::{LIGHT_FRAME, Params, Technique, TechniqueError};
+use gnomon_pipeline::technique::{LIGHT_FRAME, Params, Technique, TechniqueError, Warning};
+use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::scene::{Scene, SceneError, SceneSource};
 
 use super::{
     EnvArgs, GpuArgs, SceneArgs, parameters, parse_rate, parse_setting, parse_size, parse_time,
 };
 use crate::error::CliError;
+use crate::output::progress::Progress;
+use crate::prepared::prepare;
 
 /// The size of pictures of scenes that ask for none.
 pub(crate) const DEFAULT_SIZE: [u32; 2] = [800, 600];
@@ -43,6 +48,10 @@ pub(crate) struct FrameArgs {
     /// an image a frame]
     #[arg(long, value_name = "F", value_parser = parse_rate, requires = "frames")]
     pub(crate) light_fps: Option<f64>,
+    /// Keep in this folder what techniques compute ahead of frames (the transport of
+    /// deferred-shadowing), and look there first [default: for this run only]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) cache: Option<PathBuf>,
     /// How to execute.
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
@@ -59,6 +68,23 @@ impl FrameArgs {
     pub(crate) fn source(&self) -> Result<SceneSource, SceneError> {
         let request = self.environment.request(self.lights);
         Ok(self.scene.open()?.with_environment(request))
+    }
+
+    /// Has `technique` compute ahead what it needs for `scene`, or read it.
+    pub(crate) fn prepare(
+        &self,
+        technique: &dyn Technique,
+        params: &Params,
+        scene: &Scene,
+        progress: &Progress,
+    ) -> Result<Vec<Warning>, CliError> {
+        match &self.cache {
+            Some(folder) => {
+                let cache = OracleCache::new(folder);
+                prepare(technique, params, scene, &cache, progress)
+            }
+            None => Ok(Vec::new()),
+        }
     }
 
     /// The parameters of `technique` that were given.

@@ -14,5 +14,4 @@ pub(crate) use frame::{DEFAULT_SIZE, FrameArgs};
 pub(crate) use listing::ListArgs;
 pub(crate) use scene::SceneArgs;
 pub(crate) use settings::parameters;
-use values::parse_rate;
-pub(crate) use values::{parse_setting, parse_size, parse_time};
+pub(crate) use values::{parse_rate, parse_setting, parse_size, parse_time};

@@ -92,6 +92,7 @@ impl Hashes {
 
 #[derive(Clone, Debug, Serialize)]
 struct Times {
+    build: f64,
     frame: f64,
     passes: Object<f64>,
 }
@@ -221,6 +222,7 @@ impl RenderDocument {
             repeat: job.repeat,
             hash: Hashes::of(done),
             time_ms: Times {
+                build: done.build_ms,
                 frame: done.frame_ms,
                 passes: merged(&done.pass_ms),
             },

@@ -9,6 +9,7 @@ pub(crate) mod npy;
 pub(crate) mod numbers;
 pub(crate) mod png;
 pub(crate) mod progress;
+pub(crate) mod shell;
 pub(crate) mod tables;
 pub(crate) mod textures;
 pub(crate) mod warnings;

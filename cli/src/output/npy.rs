@@ -6,6 +6,12 @@ pub(crate) fn encode(size: [u32; 2], values: &[f32]) -> Vec<u8> {
     encode_texels(size, "<f4", 1, &bytes)
 }
 
+/// The same of float64.
+pub(crate) fn encode_f64(size: [u32; 2], values: &[f64]) -> Vec<u8> {
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    encode_texels(size, "<f8", 1, &bytes)
+}
+
 /// An array (height, width), or (height, width, channels) of several channels, of numbers
 /// that NumPy calls `kind`; `bytes` are little-endian, row by row, texel by texel.
 pub(crate) fn encode_texels(size: [u32; 2], kind: &str, channels: usize, bytes: &[u8]) -> Vec<u8> {

@@ -17,6 +17,12 @@ pub(crate) enum OverlayKind {
     Volumes,
     /// Penumbra wedges, as the technique builds them
     Wedges,
+    /// Penumbrae that overlap: edges that cut a light, seen from each pixel
+    Overlap,
+    /// Where the sum of soft shadow volumes leaves 0..1, and by how much
+    Saturation,
+    /// Where that sum is not the truth, and why
+    Artefacts,
     /// The map of the environment with the fitted lights outlined
     EnvLights,
 }
@@ -31,6 +37,9 @@ impl OverlayKind {
             Self::Silhouette => "silhouette",
             Self::Volumes => "volumes",
             Self::Wedges => "wedges",
+            Self::Overlap => "overlap",
+            Self::Saturation => "saturation",
+            Self::Artefacts => "artefacts",
             Self::EnvLights => "env-lights",
         }
     }

@@ -1,11 +1,15 @@
 //! Pictures that explain a render, one file each.
 
+mod artefacts;
 mod env_lights;
 mod kind;
 mod overdraw;
+mod overlap;
+mod saturation;
 mod sides;
 mod silhouette;
 mod stencil;
+mod sums;
 mod traffic;
 mod volumes;
 mod wedges;
@@ -60,6 +64,9 @@ pub(crate) fn draw(kind: OverlayKind, source: &Source<'_>) -> Picture {
         OverlayKind::Silhouette => silhouette::draw(source),
         OverlayKind::Volumes => volumes::draw(source),
         OverlayKind::Wedges => wedges::draw(source),
+        OverlayKind::Overlap => overlap::draw(source),
+        OverlayKind::Saturation => saturation::draw(source),
+        OverlayKind::Artefacts => artefacts::draw(source),
         OverlayKind::EnvLights => env_lights::draw(source),
     }
 }

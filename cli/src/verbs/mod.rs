@@ -1,5 +1,6 @@
 //! One file or folder per verb.
 
+pub(crate) mod bench;
 pub(crate) mod bisect;
 pub(crate) mod compare;
 pub(crate) mod debug;
@@ -7,6 +8,7 @@ pub(crate) mod demo;
 pub(crate) mod diff;
 pub(crate) mod dump;
 pub(crate) mod info;
+pub(crate) mod light;
 pub(crate) mod pixel;
 pub(crate) mod profiles;
 pub(crate) mod record;
@@ -18,6 +20,8 @@ pub(crate) mod scenes;
 pub(crate) mod techniques;
 pub(crate) mod traffic;
 pub(crate) mod trim;
+pub(crate) mod tune;
+pub(crate) mod wedge;
 
 /// A scene's name with nothing in it that could leave a folder.
 fn file_stem(scene: &str) -> String {

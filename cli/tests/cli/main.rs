@@ -3,11 +3,14 @@
 
 mod attack;
 mod bad_input;
+mod bench;
+mod cache;
 mod common;
 mod compare;
 mod draws;
 mod environment;
 mod light_images;
+mod looking_inside;
 mod overlays;
 mod pixel;
 mod render;
@@ -18,6 +21,7 @@ mod show;
 mod sweep;
 mod traces;
 mod traffic;
+mod tune;
 mod verbs;
 mod walk_through;
 mod wild;

@@ -4,4 +4,5 @@ pub mod comparison;
 pub mod heat;
 pub mod render;
 pub mod tile_traffic;
+pub mod visibility_sum;
 pub mod wedge_work;

@@ -53,9 +53,14 @@ pub struct Rendered {
     pub report: SubmitReport,
     /// What the passes of the report and their draws are for.
     pub roles: Roles,
+    /// What the technique took to build its frame, once, in milliseconds: silhouettes,
+    /// volumes, tables, commands; loading left out.
+    pub build_ms: f64,
     /// Median time of a frame in milliseconds; loading, silhouettes and volumes
     /// left out.
     pub frame_ms: f64,
+    /// Times of all timed frames in milliseconds, in the order in which they were drawn.
+    pub frames_ms: Vec<f64>,
     /// Median time of every pass, in order.
     pub pass_ms: Vec<(String, f64)>,
     /// The scene's and the technique's warnings, and the counters' events.
@@ -122,12 +127,15 @@ pub fn render(
     params: &Params,
     settings: &RenderSettings,
 ) -> Result<Rendered, RenderError> {
+    let start = Instant::now();
     let mut frame = technique.frame(scene, settings.size, params)?;
+    let build_ms = start.elapsed().as_secs_f64() * 1e3;
     check_roles(technique, &frame)?;
     frame.warnings.extend(params.without_effect(scene));
     let mut gpu = Gpu::new(settings.gpu)?;
     gpu.load(&frame.recording)?;
-    let times = Times::measure(&mut gpu, &frame, settings.repeat)?;
+    let mut times = Times::measure(&mut gpu, &frame, settings.repeat)?;
+    times.build = build_ms;
     read_back(&gpu, scene, frame, settings.size, times)
 }
 
@@ -147,9 +155,10 @@ fn check_roles(technique: &dyn Technique, frame: &Frame) -> Result<(), Technique
     })
 }
 
-/// Times of repeated frames and the counters of the last.
+/// Times of building and of repeated frames, and the counters of the last.
 struct Times {
     report: SubmitReport,
+    build: f64,
     frames: Vec<f64>,
     passes: Vec<Vec<f64>>,
 }
@@ -161,6 +170,7 @@ impl Times {
         }
         let mut times = Self {
             report: SubmitReport::default(),
+            build: 0.0,
             frames: Vec::new(),
             passes: vec![Vec::new(); frame.recording.list.passes.len()],
         };
@@ -210,7 +220,9 @@ fn read_back(
         visibility: visibility(gpu, frame.outputs.visibility, size, &depth, &stencil)?,
         depth,
         stencil,
-        frame_ms: median(times.frames),
+        build_ms: times.build,
+        frame_ms: median(times.frames.clone()),
+        frames_ms: times.frames,
         pass_ms: labels.zip(times.passes.into_iter().map(median)).collect(),
         report: times.report,
         roles: frame.roles,

@@ -25,6 +25,7 @@ pub use pass::{DrawRole, Pass, PassRole, Roles, apart};
 pub use wedges::{SceneWedges, WedgeKind};
 
 use crate::geometry::caster::RefusedCaster;
+use crate::truth::oracle::cache::{CacheWarning, OracleCache};
 use crate::world::error::LightError;
 use crate::world::light_image::{LightImage, LightImageError};
 use crate::world::scene::Scene;
@@ -65,6 +66,22 @@ pub trait Technique: Sync {
     /// As the frame: settings that rule each other out.
     fn light_image(&self, _params: &Params) -> Result<Option<LightImage>, TechniqueError> {
         Ok(None)
+    }
+
+    /// Makes what frames of `scene` need and takes long, such as precomputed transport, or
+    /// reads it from `cache`; frames then find it. `done` is told of pieces of work, from
+    /// any thread. What goes wrong with the cache is told, and made all the same.
+    ///
+    /// # Errors
+    /// As the frame.
+    fn prepare(
+        &self,
+        _scene: &Scene,
+        _params: &Params,
+        _cache: &OracleCache,
+        _done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Vec<CacheWarning>, TechniqueError> {
+        Ok(Vec::new())
     }
 
     /// The penumbra wedges of its frame, from the same casters, silhouettes and

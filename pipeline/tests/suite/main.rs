@@ -45,6 +45,7 @@ mod split_sums;
 mod subdivision;
 mod technique_determinism;
 mod views;
+mod visibility_sum;
 mod volumes_in_use;
 mod wedge_adversarial;
 mod wedge_exact;

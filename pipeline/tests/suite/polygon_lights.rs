@@ -29,7 +29,12 @@ fn scene(name: &str, n: u32, tilt: f64) -> Scene {
     let up = edge_u.cross(edge_v).normalize() * edge_u.length();
     let corner = |k: u32| {
         let angle = f64::from(k) / f64::from(n) * std::f64::consts::TAU + 0.3;
-        let wide = if k.is_multiple_of(2) { 0.5 } else { 0.46 };
+        // Of few corners not all at one distance; of many that would not be convex.
+        let wide = if n < 8 && !k.is_multiple_of(2) {
+            0.46
+        } else {
+            0.5
+        };
         let (s, t) = (angle.cos() * wide, angle.sin() * wide * 0.8);
         centre + edge_u * s + edge_v * t + up * (tilt * s)
     };
@@ -56,8 +61,8 @@ fn error(scene: &Scene, technique: &str, set: &[&str]) -> ErrorSummary {
 fn a_plate_under_a_polygon_is_the_truth() {
     for (corners, tilt) in [(3, 0.0), (5, 0.2), (7, -0.3), (16, 0.1)] {
         let scene = scene("parallel-plates", corners, tilt);
-        assert!(error(&scene, SOFT, &[]).rmse < 2e-5, "{corners}");
-        assert!(error(&scene, OPTIMISED, &[]).rmse < 1e-3, "{corners}");
+        assert!(error(&scene, SOFT, &[]).rmse < 2e-6, "{corners}");
+        assert!(error(&scene, OPTIMISED, &[]).rmse < 2e-4, "{corners}");
     }
     let scene = scene("parallel-plates", 5, 0.2);
     let table = ["backend=texture4d", "texture-size=20"];

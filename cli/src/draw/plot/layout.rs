@@ -1,6 +1,6 @@
 //! From a chart to lines, dots, bars and text in pixels.
 
-use gnomon_claims::chart::{Chart, Mark, Series};
+use gnomon_claims::chart::{Axis, Chart, Mark, Series};
 
 use super::axis::{Range, tick_label};
 use crate::draw::font;
@@ -8,28 +8,30 @@ use crate::draw::font;
 /// Width and height of the area between the axes, in pixels.
 const AREA: [f32; 2] = [720.0, 440.0];
 /// Left, top, bottom, and right of the area.
-const LEFT: f32 = 92.0;
-const TOP: f32 = 74.0;
-const BOTTOM: f32 = 66.0;
-const GAP: f32 = 24.0;
+pub(super) const LEFT: f32 = 92.0;
+pub(super) const TOP: f32 = 74.0;
+pub(super) const BOTTOM: f32 = 66.0;
+pub(super) const GAP: f32 = 24.0;
 /// Pixels of a font pixel.
 pub(super) const TEXT_SCALE: u32 = 2;
-const LINE_HEIGHT: f32 = 26.0;
+pub(super) const LINE_HEIGHT: f32 = 26.0;
 
-const INK: [u8; 3] = [40, 40, 40];
-const GRID: [u8; 3] = [226, 226, 226];
-const PAPER: [u8; 3] = [255, 255, 255];
+pub(super) const INK: [u8; 3] = [40, 40, 40];
+pub(super) const GRID: [u8; 3] = [226, 226, 226];
+pub(super) const PAPER: [u8; 3] = [255, 255, 255];
 /// Told apart also by people who see few colours (Okabe and Ito), dark enough on
 /// white.
-const COLOURS: [[u8; 3]; 7] = [
+pub(super) const COLOURS: [[u8; 3]; 7] = [
     [0, 114, 178],
     [213, 94, 0],
     [0, 158, 115],
     [204, 121, 167],
     [86, 180, 233],
     [230, 159, 0],
-    [90, 90, 90],
+    GREY,
 ];
+/// The colour that goes with the paper.
+pub(super) const GREY: [u8; 3] = [90, 90, 90];
 
 /// What is drawn, in order.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +54,13 @@ pub(super) enum Item {
         at: [f32; 2],
         size: [f32; 2],
         colour: [u8; 3],
+    },
+    /// A marker: an outline round its filling, with words for whoever points at it.
+    Marker {
+        outline: Vec<[f32; 2]>,
+        fill: [u8; 3],
+        colour: [u8; 3],
+        title: String,
     },
     /// Text, its left, middle or right end at `at`, which is at the top.
     Text {
@@ -94,9 +103,10 @@ impl Layout {
         let plot = Plot {
             x: Range::new(chart.x.scale, values(0)),
             y: Range::new(chart.y.scale, values(1)),
+            area: AREA,
         };
         let mut items = Vec::new();
-        plot.draw_grid(chart, &mut items);
+        plot.draw_grid(&chart.title, [&chart.x, &chart.y], &mut items);
         let mut labels = Vec::new();
         for (k, series) in chart.series.iter().enumerate() {
             let hidden = plot.draw_series(series, Look::of(k, series.mark), &mut items);
@@ -119,27 +129,31 @@ impl Layout {
 }
 
 /// Both axes over the area.
-struct Plot {
-    x: Range,
-    y: Range,
+pub(super) struct Plot {
+    pub(super) x: Range,
+    pub(super) y: Range,
+    /// Width and height in pixels.
+    pub(super) area: [f32; 2],
 }
 
 impl Plot {
     fn at_x(&self, x: f64) -> Option<f32> {
-        self.x.place(x).map(|t| LEFT + AREA[0] * t as f32)
+        self.x.place(x).map(|t| LEFT + self.area[0] * t as f32)
     }
 
     fn at_y(&self, y: f64) -> Option<f32> {
-        self.y.place(y).map(|t| TOP + AREA[1] * (1.0 - t as f32))
+        self.y
+            .place(y)
+            .map(|t| TOP + self.area[1] * (1.0 - t as f32))
     }
 
-    fn at(&self, [x, y]: [f64; 2]) -> Option<[f32; 2]> {
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<[f32; 2]> {
         Some([self.at_x(x)?, self.at_y(y)?])
     }
 
     /// Title, ticks with their lines and labels, axes.
-    fn draw_grid(&self, chart: &Chart, items: &mut Vec<Item>) {
-        let [right, bottom] = [LEFT + AREA[0], TOP + AREA[1]];
+    pub(super) fn draw_grid(&self, title: &str, [across, up]: [&Axis; 2], items: &mut Vec<Item>) {
+        let [right, bottom] = [LEFT + self.area[0], TOP + self.area[1]];
         let text = |at, anchor, text: &str| Item::Text {
             at,
             anchor,
@@ -151,8 +165,8 @@ impl Plot {
             width: 1.0,
             dashed: false,
         };
-        items.push(text([GAP, 12.0], Anchor::Start, &chart.title));
-        items.push(text([GAP, 44.0], Anchor::Start, &chart.y.label));
+        items.push(text([GAP, 12.0], Anchor::Start, title));
+        items.push(text([GAP, 44.0], Anchor::Start, &up.label));
         for (value, x) in self
             .x
             .ticks
@@ -174,8 +188,8 @@ impl Plot {
         }
         items.push(line([[LEFT, TOP], [LEFT, bottom]], INK));
         items.push(line([[LEFT, bottom], [right, bottom]], INK));
-        let middle = [LEFT + 0.5 * AREA[0], bottom + 34.0];
-        items.push(text(middle, Anchor::Middle, &chart.x.label));
+        let middle = [LEFT + 0.5 * self.area[0], bottom + 34.0];
+        items.push(text(middle, Anchor::Middle, &across.label));
     }
 
     /// Draws a series, its line interrupted where a point cannot be shown; how many
@@ -186,7 +200,7 @@ impl Plot {
             let runs = places.split(Option::is_none).filter(|run| run.len() > 1);
             items.extend(runs.map(|run| look.line(run.iter().flatten().copied().collect())));
         }
-        let bottom = TOP + AREA[1];
+        let bottom = TOP + self.area[1];
         let shown = places.iter().flatten();
         items.extend(shown.clone().filter_map(|at| look.mark_at(*at, bottom)));
         places.len() - shown.count()

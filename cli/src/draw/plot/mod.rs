@@ -6,13 +6,17 @@
 //! show the same.
 
 mod axis;
+mod cloud;
 mod layout;
+mod mark;
+mod place;
 mod raster;
 mod svg;
 
 use gnomon_claims::chart::Chart;
 
 use super::Picture;
+pub(crate) use cloud::{Cloud, Member, Spot};
 
 /// The chart as a picture.
 pub fn picture(chart: &Chart) -> Picture {
@@ -21,7 +25,23 @@ pub fn picture(chart: &Chart) -> Picture {
 
 /// The chart as an SVG document.
 pub fn svg(chart: &Chart) -> String {
-    svg::write(&layout::Layout::new(chart))
+    svg::write(&layout::Layout::new(chart), svg::Place::File)
+}
+
+/// Labelled points as a picture.
+pub(crate) fn cloud_picture(cloud: &Cloud) -> Picture {
+    raster::draw(&cloud.lay_out())
+}
+
+/// Labelled points as an SVG document.
+pub(crate) fn cloud_svg(cloud: &Cloud) -> String {
+    svg::write(&cloud.lay_out(), svg::Place::File)
+}
+
+/// Labelled points as an SVG element of a page with the variables `--ink`, `--page` and
+/// `--line`.
+pub(crate) fn cloud_in_page(cloud: &Cloud) -> String {
+    svg::write(&cloud.lay_out(), svg::Place::Page)
 }
 
 #[cfg(test)]

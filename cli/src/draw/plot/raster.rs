@@ -6,6 +6,9 @@ use crate::draw::{Canvas, Picture, Stroke};
 /// Lengths of dash and gap in pixels, as in the SVG.
 pub(super) const DASH: [f32; 2] = [8.0, 6.0];
 
+/// Width of the outlines of markers in pixels, as in the SVG.
+pub(super) const MARKER_STROKE: f32 = 2.0;
+
 pub(super) fn draw(layout: &Layout) -> Picture {
     let mut canvas = Canvas::new(layout.size, layout.paper);
     for item in &layout.items {
@@ -35,6 +38,20 @@ fn put(canvas: &mut Canvas, item: &Item, ink: [u8; 3]) {
             }
         }
         Item::Dot { at, radius, colour } => canvas.fill(&circle(*at, *radius), *colour, 1.0),
+        Item::Marker {
+            outline,
+            fill,
+            colour,
+            ..
+        } => {
+            canvas.fill(outline, *fill, 1.0);
+            let stroke = Stroke {
+                colour: *colour,
+                opacity: 1.0,
+                width: MARKER_STROKE,
+            };
+            canvas.line(outline, true, stroke);
+        }
         Item::Bar { at, size, colour } => canvas.fill_rect(*at, *size, *colour),
         Item::Text { at, anchor, text } => {
             let shift = match anchor {
@@ -49,9 +66,15 @@ fn put(canvas: &mut Canvas, item: &Item, ink: [u8; 3]) {
 }
 
 /// A circle as a polygon of 16 corners.
-fn circle([x, y]: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
-    let corner = |k: u8| {
-        let angle = std::f64::consts::TAU * f64::from(k) / 16.0;
+fn circle(centre: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
+    ring(centre, &[radius; 16], 0.0)
+}
+
+/// A polygon whose corners are round `centre` at even angles, the first `turn` of a full
+/// turn from the right, downwards, each as far as `radii` say.
+pub(super) fn ring([x, y]: [f32; 2], radii: &[f32], turn: f64) -> Vec<[f32; 2]> {
+    let corner = |(k, radius): (usize, &f32)| {
+        let angle = std::f64::consts::TAU * (turn + k as f64 / radii.len() as f64);
         let (sin, cos) = (
             gnomon_raster::math::scalar::sin,
             gnomon_raster::math::scalar::cos,
@@ -61,7 +84,7 @@ fn circle([x, y]: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
             y + radius * sin(angle as f32),
         ]
     };
-    (0..16).map(corner).collect()
+    radii.iter().enumerate().map(corner).collect()
 }
 
 /// The pieces of a dashed line; the pattern goes on round corners.

@@ -2,30 +2,52 @@
 
 use std::fmt::Write;
 
-use super::layout::{Anchor, Item, Layout};
-use super::raster::DASH;
+use super::layout::{Anchor, GREY, GRID, INK, Item, Layout, PAPER};
+use super::raster::{DASH, MARKER_STROKE};
 
 /// Of text, pixels: as wide as the bitmap font in a monospaced one.
 const FONT_SIZE: f32 = 20.0;
 
-pub(super) fn write(layout: &Layout) -> String {
+/// Where a plot stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// In a file of its own, black on white.
+    File,
+    /// In a page that says what paper, ink and lines look like.
+    Page,
+}
+
+impl Place {
+    fn colour(self, colour: [u8; 3]) -> String {
+        match (self, colour) {
+            (Self::Page, INK) => "var(--ink)".to_owned(),
+            (Self::Page, GRID) => "var(--line)".to_owned(),
+            (Self::Page, PAPER) => "var(--page)".to_owned(),
+            (Self::Page, GREY) => "var(--quiet)".to_owned(),
+            _ => hex(colour),
+        }
+    }
+}
+
+pub(super) fn write(layout: &Layout, place: Place) -> String {
     let [width, height] = layout.size;
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {width} {height}\" font-family=\"monospace\" font-size=\"{FONT_SIZE}\" \
          fill=\"{}\">\n<title>{}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
-        hex(layout.ink),
+        place.colour(layout.ink),
         escaped(&layout.title),
-        hex(layout.paper),
+        place.colour(layout.paper),
     );
     for item in &layout.items {
-        out += &element(item);
+        out += &element(item, place);
         out.push('\n');
     }
     out + "</svg>\n"
 }
 
-fn element(item: &Item) -> String {
+fn element(item: &Item, place: Place) -> String {
+    let hex = |colour: [u8; 3]| place.colour(colour);
     match item {
         Item::Line {
             points,
@@ -33,21 +55,29 @@ fn element(item: &Item) -> String {
             width,
             dashed,
         } => {
-            let mut list = String::new();
-            for [x, y] in points {
-                // Writing to a string cannot fail.
-                let _ = write!(list, "{x:.1},{y:.1} ");
-            }
             let dash = match dashed {
                 true => format!(" stroke-dasharray=\"{} {}\"", DASH[0], DASH[1]),
                 false => String::new(),
             };
             format!(
                 "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\"{dash}/>",
-                list.trim_end(),
+                list(points),
                 hex(*colour)
             )
         }
+        Item::Marker {
+            outline,
+            fill,
+            colour,
+            title,
+        } => format!(
+            "<polygon points=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"{MARKER_STROKE}\">\
+             <title>{}</title></polygon>",
+            list(outline),
+            hex(*fill),
+            hex(*colour),
+            escaped(title)
+        ),
         Item::Dot { at, radius, colour } => format!(
             "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius}\" fill=\"{}\"/>",
             at[0],
@@ -77,6 +107,16 @@ fn element(item: &Item) -> String {
             )
         }
     }
+}
+
+/// Points as attributes have them.
+fn list(points: &[[f32; 2]]) -> String {
+    let mut list = String::new();
+    for [x, y] in points {
+        // Writing to a string cannot fail.
+        let _ = write!(list, "{x:.1},{y:.1} ");
+    }
+    list.trim_end().to_owned()
 }
 
 fn hex([r, g, b]: [u8; 3]) -> String {

@@ -1,6 +1,5 @@
 //! Renders the techniques and measures them.
 
-use std::borrow::Cow;
 use std::time::Instant;
 
 use gnomon_pipeline::measure::comparison::{Aligned, Origin, Reference, Score, ShadingKey, shaded};
@@ -9,6 +8,7 @@ use gnomon_pipeline::measure::render::{Rendered, render};
 use super::job::{CompareJob, Entry};
 use crate::error::CliError;
 use crate::output::progress::Progress;
+use crate::prepared::prepare;
 
 /// The truth and all techniques.
 pub(super) struct Comparison {
@@ -55,15 +55,23 @@ pub(super) fn run(job: &CompareJob, progress: &Progress) -> Result<Comparison, C
     };
     for entry in &job.entries {
         progress.doing(&entry.label);
-        found.measure(job, entry)?;
+        found.measure(job, entry, progress)?;
         progress.step();
     }
     Ok(found)
 }
 
 impl Comparison {
-    fn measure(&mut self, job: &CompareJob, entry: &Entry) -> Result<(), CliError> {
-        let mut done = render(&job.scene, entry.technique, &entry.params, &job.settings)?;
+    fn measure(
+        &mut self,
+        job: &CompareJob,
+        entry: &Entry,
+        progress: &Progress,
+    ) -> Result<(), CliError> {
+        let (technique, params) = (entry.technique, &entry.params);
+        let ahead = prepare(technique, params, &job.scene, &job.cache, progress)?;
+        let mut done = render(&job.scene, technique, params, &job.settings)?;
+        done.warnings.extend(ahead);
         let under = self.reference.under(&done.depth)?;
         let truth = self.picture_of_truth(job, entry, &under)?;
         let score = Score::measure(&under, &done, &self.shaded[truth].1)?;
@@ -89,11 +97,13 @@ impl Comparison {
         if let Some(known) = self.shaded.iter().position(|(k, _)| *k == key) {
             return Ok(known);
         }
-        let scene = match &job.image {
-            Some(image) => Cow::Owned(job.scene.with_light_image(image)),
-            None => Cow::Borrowed(&job.scene),
-        };
-        let picture = shaded(&scene, &self.reference, under, &entry.params, &job.settings)?;
+        let picture = shaded(
+            &job.scene,
+            &self.reference,
+            under,
+            &entry.params,
+            &job.settings,
+        )?;
         self.shaded.push((key, picture));
         Ok(self.shaded.len() - 1)
     }

@@ -1,6 +1,6 @@
 //! From the command line to a trace.
 
-use gnomon_pipeline::technique::{Params, Technique};
+use gnomon_pipeline::technique::{Params, Technique, Warning};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 use gnomon_traces::{Meta, RecordOptions, Recorder, Trace};
@@ -9,7 +9,7 @@ use super::args::RecordArgs;
 use crate::error::CliError;
 use crate::output::files::{Batch, check_extension};
 use crate::output::progress::Progress;
-use crate::output::{self, numbers};
+use crate::output::{self, numbers, warnings};
 use crate::verbs::info::TraceDocument;
 
 /// Records what was asked for; the file appears whole or not at all.
@@ -19,7 +19,7 @@ pub(crate) fn run(args: &RecordArgs, registry: &Registry) -> Result<(), CliError
     let params = args.frame.params(technique)?;
     args.frame.check_light_fps(&params)?;
     let mut source = args.frame.source()?;
-    let trace = record(args, technique, &params, &mut source)?;
+    let (trace, warnings) = record(args, technique, &params, &mut source)?;
     let mut batch = Batch::default();
     batch.stage(&args.out, trace.to_bytes())?;
     batch.commit()?;
@@ -27,7 +27,11 @@ pub(crate) fn run(args: &RecordArgs, registry: &Registry) -> Result<(), CliError
     if args.json {
         output::print_json(&document)?;
     }
-    output::print_summary(&summarise(args, &document), args.json)
+    let mut text = summarise(args, &document);
+    for line in warnings::lines(&warnings) {
+        text += &format!("warning: {line}\n");
+    }
+    output::print_summary(&text, args.json)
 }
 
 fn record(
@@ -35,16 +39,17 @@ fn record(
     technique: &dyn Technique,
     params: &Params,
     source: &mut SceneSource,
-) -> Result<Trace, CliError> {
+) -> Result<(Trace, Vec<Warning>), CliError> {
     let count = args.frame.frames.unwrap_or(1);
     args.frame.check_times(count)?;
     let progress = Progress::new(u64::from(count));
-    let mut recorder = None;
+    let (mut recorder, mut warnings) = (None, Vec::new());
     for frame in 0..count {
         progress.doing(format!("frame {frame}"));
         let scene = source.at(args.frame.time_of(frame))?;
         let size = args.frame.size_of(&scene);
         let params = args.frame.params_of(params, frame);
+        warnings.extend(args.frame.prepare(technique, &params, &scene, &progress)?);
         let drawn = technique.frame(&scene, size, &params)?;
         recorder
             .get_or_insert_with(|| start(args, technique, &params, &scene, size))
@@ -52,7 +57,7 @@ fn record(
         progress.step();
     }
     let recorder = recorder.expect("at least one frame is asked for");
-    Ok(recorder.finish()?)
+    Ok((recorder.finish()?, warnings))
 }
 
 fn start(

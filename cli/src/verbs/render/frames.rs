@@ -58,7 +58,9 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         let out = folder.join(format!("frame-{frame:04}.png"));
         let params = args.frame.params_of(&params, frame);
         let job = RenderJob::of(args, technique, params, scene, Some(out))?;
-        let done = render(&job.scene, technique, &job.params, &job.settings)?;
+        let ahead = (args.frame).prepare(technique, &job.params, &job.scene, &progress)?;
+        let mut done = render(&job.scene, technique, &job.params, &job.settings)?;
+        done.warnings.extend(ahead);
         progress.step();
         let files = write(&job, args, &done, &progress)?;
         table.rows.push(row(frame, time, &done));

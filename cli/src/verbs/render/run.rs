@@ -24,7 +24,9 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     let job = RenderJob::new(args, registry)?;
     progress.step();
     progress.doing("rendering");
-    let done = render(&job.scene, job.technique, &job.params, &job.settings)?;
+    let ahead = (args.frame).prepare(job.technique, &job.params, &job.scene, &progress)?;
+    let mut done = render(&job.scene, job.technique, &job.params, &job.settings)?;
+    done.warnings.extend(ahead);
     progress.step();
     let files = write(&job, args, &done, &progress)?;
     drop(progress);

@@ -206,7 +206,7 @@ pub(super) fn measure_errors(
     for (entry, subject) in entries.iter().zip(subjects) {
         let Some(done) = &subject.done else { continue };
         let image = entry.technique.light_image(&entry.params)?;
-        let (mut truth, mut shown) = (Cow::Borrowed(&plain), Cow::Borrowed(scene));
+        let mut truth = Cow::Borrowed(&plain);
         if let Some(image) = &image {
             let of = (0, Some(image));
             let size = settings.size;
@@ -218,10 +218,9 @@ pub(super) fn measure_errors(
                 None,
                 &|| {},
             )?);
-            shown = Cow::Owned(scene.with_light_image(image));
         }
         let under = truth.under(&done.depth)?;
-        let picture = shaded(&shown, &truth, &under, &entry.params, settings)?;
+        let picture = shaded(scene, &truth, &under, &entry.params, settings)?;
         subject.score = Some(Score::measure(&under, done, &picture)?);
     }
     Ok(())

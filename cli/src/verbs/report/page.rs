@@ -8,8 +8,8 @@ use super::measure::Subject;
 use crate::output::html::scatter::{Point, Scatter};
 use crate::output::html::{bars, draws, frame, history, maps, page};
 use crate::output::json::worker_threads;
-use crate::output::png;
 use crate::output::tables::Table;
+use crate::output::{png, shell};
 
 /// The page's text.
 pub(super) fn make(scene: &str, gpu: &GpuConfig, repeat: u32, subjects: &[Subject]) -> String {
@@ -148,15 +148,10 @@ fn command() -> String {
     let program = Path::new(&program).file_name();
     let program = program.map_or("gnomon".into(), |p| p.to_string_lossy().into_owned());
     let words = std::iter::once(program).chain(words);
-    words.map(|w| quote(&w)).collect::<Vec<_>>().join(" ")
-}
-
-fn quote(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@%".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
+    words
+        .map(|w| shell::quote(&w))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 fn cpu() -> String {
@@ -167,17 +162,4 @@ fn cpu() -> String {
     name.map_or(std::env::consts::ARCH.to_owned(), |(_, name)| {
         name.trim().to_owned()
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quote;
-
-    #[test]
-    fn words_survive_a_shell() {
-        assert_eq!(quote("a-b=1"), "a-b=1");
-        assert_eq!(quote("a b"), "'a b'");
-        assert_eq!(quote("it's"), r"'it'\''s'");
-        assert_eq!(quote(""), "''");
-    }
 }

@@ -212,6 +212,12 @@ impl Projection {
         )
     }
 
+    /// The receiver's distance from the light's plane, in the units of homogeneous
+    /// images: that of a point in the plane has this w.
+    pub fn distance(&self) -> f64 {
+        self.eye.z
+    }
+
     /// The part of the edge's image on the light; `None` where there is none.
     ///
     /// Clips in homogeneous coordinates to `|x| <= w, |y| <= w`, or to

@@ -83,6 +83,8 @@ pub struct Reference {
     pub origin: Origin,
     /// What went wrong with the cache.
     pub warnings: Vec<CacheWarning>,
+    /// What is on the light.
+    pub light_image: Option<LightImage>,
     /// Green and blue of a light with an image, of which `image` is red.
     others: Option<[VisibilityImage; 2]>,
     sight: Sight,
@@ -175,6 +177,7 @@ impl Reference {
                 Origin::Computed
             },
             warnings: found.warnings,
+            light_image: image.cloned(),
             others,
             sight,
         })

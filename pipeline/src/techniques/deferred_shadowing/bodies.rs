@@ -33,16 +33,30 @@ pub(super) fn bodies<'a>(
     draws: &SceneDraws<'a>,
     settings: &Settings,
 ) -> Vec<Body<'a>> {
+    with_transport(scene, draws, &|object| {
+        Transport::kept(object, settings.transport)
+    })
+}
+
+/// What gives an object's transport.
+type Source<'s> = &'s dyn Fn(&TransportObject<'_>) -> Arc<Transport>;
+
+/// The same with transport from anywhere.
+pub(super) fn with_transport<'a>(
+    scene: &'a Scene,
+    draws: &SceneDraws<'a>,
+    source: Source<'_>,
+) -> Vec<Body<'a>> {
     let body = |object: &'a Object| {
         let surfaces = draws.surfaces();
         let own = surfaces.iter().find(|s| std::ptr::eq(s.object, object))?;
-        Body::new(object, own, settings)
+        Body::new(object, own, source)
     };
     scene.objects.iter().filter_map(body).collect()
 }
 
 impl<'a> Body<'a> {
-    fn new(object: &'a Object, surface: &SurfaceDraw<'_>, settings: &Settings) -> Option<Self> {
+    fn new(object: &'a Object, surface: &SurfaceDraw<'_>, source: Source<'_>) -> Option<Self> {
         let (low, high) = object.mesh.bounds()?;
         let hides = object.casts && object.receives;
         let rest = object
@@ -59,7 +73,7 @@ impl<'a> Body<'a> {
             adjacency.closedness(mesh).is_closed()
         };
         let both = if closed() { &[1.0][..] } else { &[1.0, -1.0] };
-        let side = |sign: &f32| geometry.transport(*sign, settings);
+        let side = |sign: &f32| geometry.transport(*sign, source);
         Some(Self {
             object,
             turn: rest.map_or(DMat3::IDENTITY, |rest| rest.turn),
@@ -115,7 +129,7 @@ impl Geometry {
         }
     }
 
-    fn transport(&self, sign: f32, settings: &Settings) -> Arc<Transport> {
+    fn transport(&self, sign: f32, source: Source<'_>) -> Arc<Transport> {
         let normals: Vec<_> = self.normals.iter().map(|n| n.map(|c| c * sign)).collect();
         let object = TransportObject {
             positions: &self.positions,
@@ -123,7 +137,7 @@ impl Geometry {
             triangles: &self.triangles,
             casts: self.casts,
         };
-        Transport::kept(&object, settings.transport)
+        source(&object)
     }
 }
 

@@ -40,11 +40,15 @@ mod shadows;
 mod sheets;
 mod sources;
 
+use std::cell::RefCell;
+
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
+use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::technique::{
     Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
 };
+use crate::truth::oracle::cache::{CacheWarning, OracleCache};
 use crate::world::scene::Scene;
 use settings::Settings;
 
@@ -66,6 +70,25 @@ impl Technique for DeferredShadowing {
 
     fn capabilities(&self) -> Capabilities {
         Capabilities::of_light_views(ShadowKind::Soft)
+    }
+
+    fn prepare(
+        &self,
+        scene: &Scene,
+        params: &Params,
+        cache: &OracleCache,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Vec<CacheWarning>, TechniqueError> {
+        let settings = Settings::read(params)?;
+        // Of one pixel: only what objects are is asked for.
+        let frame = ShadowedFrame::new(scene, [1; 2], &settings.frame)?.with_ambient();
+        let warnings = RefCell::new(Vec::new());
+        bodies::with_transport(scene, &frame.draws, &|object| {
+            let found = cache.transport(object, settings.transport, done);
+            warnings.borrow_mut().extend(found.warnings);
+            found.transport
+        });
+        Ok(warnings.into_inner())
     }
 
     fn frame(

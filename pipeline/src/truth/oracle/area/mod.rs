@@ -220,6 +220,22 @@ impl AreaOracle {
         }
     }
 
+    /// Triangles near the pyramid from a point to the light, as places in the list of
+    /// casters, in order; others hide nothing. `None` where no pyramid is seen: all may
+    /// count.
+    pub fn near(&self, point: DVec3, work: &mut Workspace) -> Option<Vec<u32>> {
+        let light = self.emitter.seen_from(point)?;
+        let frame = light.frame.relative_to(point);
+        pyramid(&mut work.region, point, &frame, light.outline);
+        let mut near = Vec::new();
+        self.casters.gather(&work.region, |index, _| {
+            near.push(index);
+            ControlFlow::Continue(())
+        });
+        near.sort_unstable();
+        Some(near)
+    }
+
     /// Leaves the visible fragments in `work`; returns how many triangles were
     /// looked at.
     fn cut(&self, light: &FlatLight<'_>, receiver: &Receiver, work: &mut Workspace) -> u32 {

@@ -1,0 +1,200 @@
+//! A technique and a grid over its parameters: `pcf:taps=2|4|8:map-size=256|512`.
+
+use gnomon_pipeline::technique::{Domain, ParamInfo, Params, Technique, TechniqueError};
+use gnomon_pipeline::techniques::Registry;
+
+use super::check::Entry;
+use super::request::Given;
+use crate::error::CliError;
+
+/// The parameter by which techniques choose lights.
+const LIGHT: &str = "light";
+/// What stands for every technique at its defaults.
+const ALL: &str = "all";
+/// Most points of one grid.
+const MOST_POINTS: usize = 4096;
+
+/// Keys and values.
+type Settings = Vec<(String, String)>;
+
+/// Every point of the grid that `given` writes, under light number `light`.
+pub(super) fn expand(
+    given: &Given<String>,
+    registry: &Registry,
+    light: usize,
+) -> Result<Vec<Entry>, CliError> {
+    let mut parts = given.value.split(':').map(str::trim);
+    let name = parts.next().unwrap_or_default();
+    if name.is_empty() {
+        return Err(given.wrong(format!(
+            "`{}` names no technique; expected NAME, NAME:KEY=V1|V2:... or {ALL}",
+            given.value
+        )));
+    }
+    let axes = parts.map(|axis| parse_axis(given, axis));
+    let axes = axes.collect::<Result<Vec<_>, _>>()?;
+    if name == ALL {
+        return every(given, registry, light, &axes);
+    }
+    let technique = registry.find(name).map_err(|e| given.wrong(e))?;
+    let points = product(given, &axes)?;
+    let entries = points.iter().map(|p| entry(technique, p, light));
+    let entries: Result<_, TechniqueError> = entries.collect();
+    entries.map_err(|e| given.wrong(e))
+}
+
+fn every(
+    given: &Given<String>,
+    registry: &Registry,
+    light: usize,
+    axes: &[(String, Vec<String>)],
+) -> Result<Vec<Entry>, CliError> {
+    if let Some((key, _)) = axes.first() {
+        return Err(given.wrong(format!(
+            "`{ALL}` takes no settings, and `{key}` was given; name the techniques"
+        )));
+    }
+    let entries = registry.all().iter().map(|t| entry(*t, &[], light));
+    let entries: Result<_, TechniqueError> = entries.collect();
+    entries.map_err(|e| given.wrong(e))
+}
+
+fn parse_axis(given: &Given<String>, text: &str) -> Result<(String, Vec<String>), CliError> {
+    let wrong = |problem: &str| given.wrong(format!("`{text}` of `{}`: {problem}", given.value));
+    let (key, values) = text
+        .split_once('=')
+        .ok_or_else(|| wrong("expected KEY=VALUE or KEY=V1|V2|..."))?;
+    if key.trim() == LIGHT {
+        return Err(wrong(
+            "one light is measured at a time: choose it for all with `light`",
+        ));
+    }
+    let values: Vec<String> = values.split('|').map(|v| v.trim().to_owned()).collect();
+    Ok((key.trim().to_owned(), values))
+}
+
+/// Every combination, the last axis fastest.
+fn product(
+    given: &Given<String>,
+    axes: &[(String, Vec<String>)],
+) -> Result<Vec<Settings>, CliError> {
+    let count = axes
+        .iter()
+        .try_fold(1usize, |n, a| n.checked_mul(a.1.len()));
+    if count.is_none_or(|n| n > MOST_POINTS) {
+        return Err(given.wrong(format!(
+            "`{}` has more than {MOST_POINTS} combinations; give fewer values",
+            given.value
+        )));
+    }
+    let mut points = vec![Settings::new()];
+    for (key, values) in axes {
+        let with = |point: &Settings| {
+            let values = values.iter().map(|v| (key.clone(), v.clone()));
+            values
+                .map(|setting| point.iter().cloned().chain([setting]).collect())
+                .collect::<Vec<Settings>>()
+        };
+        points = points.iter().flat_map(with).collect();
+    }
+    Ok(points)
+}
+
+/// The technique with `given` settings under light number `light`.
+pub(super) fn entry(
+    technique: &'static dyn Technique,
+    given: &[(String, String)],
+    light: usize,
+) -> Result<Entry, TechniqueError> {
+    let written = given.iter().map(|(k, v)| format!("{k}={v}"));
+    let params = Params::parse(technique, written)?;
+    let settings: Settings = technique
+        .params()
+        .iter()
+        .filter_map(|info| changed(info, &params))
+        .collect();
+    let has_lights = technique.params().iter().any(|p| p.name == LIGHT);
+    let light = has_lights.then(|| format!("{LIGHT}={light}"));
+    let plain = settings.iter().map(|(k, v)| format!("{k}={v}"));
+    let params = Params::parse(technique, light.into_iter().chain(plain))?;
+    Ok(Entry {
+        technique,
+        params,
+        settings,
+    })
+}
+
+/// A parameter that is not at its default, its value in one writing.
+fn changed(info: &ParamInfo, params: &Params) -> Option<(String, String)> {
+    let text = params.text(info.name)?;
+    if info.domain.same(text, &info.default.to_string()) {
+        return None;
+    }
+    let number = match info.domain {
+        Domain::Whole { .. } => text.parse::<u64>().ok().map(|n| n.to_string()),
+        Domain::Decimal { .. } => text.parse::<f64>().ok().map(|x| x.to_string()),
+        _ => None,
+    };
+    let text = number.unwrap_or_else(|| text.to_owned());
+    Some((info.name.to_owned(), text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(text: &str) -> Result<Vec<String>, String> {
+        let given = Given::new(text.to_owned(), "s.toml:3");
+        let entries = expand(&given, &Registry::built_in(), 0);
+        let entries = entries.map_err(|e| e.to_string())?;
+        let label = |e: &Entry| {
+            let settings = e.settings.iter().map(|(k, v)| format!(" {k}={v}"));
+            e.technique.name().to_owned() + &settings.collect::<String>()
+        };
+        Ok(entries.iter().map(label).collect())
+    }
+
+    #[test]
+    fn grids_have_every_combination_and_defaults_no_name() {
+        assert_eq!(
+            labels("pcf:taps=2|04|8:map-size=256|512").unwrap(),
+            [
+                "pcf taps=2 map-size=256",
+                "pcf taps=2",
+                "pcf map-size=256",
+                "pcf",
+                "pcf taps=8 map-size=256",
+                "pcf taps=8",
+            ]
+        );
+        assert_eq!(
+            labels("all").unwrap().len(),
+            Registry::built_in().all().len()
+        );
+    }
+
+    #[test]
+    fn errors_name_the_place_the_value_and_what_is_valid() {
+        for (text, parts) in [
+            ("pcff", ["'pcff'", "did you mean 'pcf'"]),
+            ("pcf:taps=0", ["'0'", "1 to 64"]),
+            ("pcf:taps=2||4", ["taps", "1 to 64"]),
+            ("pcf:tabs=2", ["'tabs'", "did you mean 'taps'"]),
+            ("pcf:taps", ["`taps`", "KEY=VALUE"]),
+            ("", ["``", "NAME"]),
+            ("all:taps=3", ["`taps`", "name the techniques"]),
+            ("pcf:light=1", ["`light=1`", "one light"]),
+        ] {
+            let message = labels(text).unwrap_err();
+            assert!(message.starts_with("s.toml:3: "), "{message}");
+            assert!(
+                parts.iter().all(|p| message.contains(p)),
+                "{text}: {message}"
+            );
+        }
+        let values: Vec<String> = (1..=64).map(|n: u32| n.to_string()).collect();
+        let wide = values.join("|");
+        let message = labels(&format!("pcf:taps={wide}:bias={wide}:near={wide}")).unwrap_err();
+        assert!(message.contains("4096"), "{message}");
+    }
+}

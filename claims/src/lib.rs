@@ -34,6 +34,7 @@ mod paper2_recorded;
 mod paper2_tiles;
 mod paper2_time;
 mod paper3;
+mod paper3_images;
 mod paper3_recorded;
 mod paper3_scaling;
 mod paper4;

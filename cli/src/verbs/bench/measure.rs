@@ -8,6 +8,7 @@ use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
+use gnomon_pipeline::world::light_image::LightImage;
 use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::{GpuConfig, Traffic};
 
@@ -32,6 +33,8 @@ pub(super) struct Bench<'a> {
 struct Truth {
     scene: usize,
     size: [u32; 2],
+    /// What is on the light.
+    image: Option<LightImage>,
     reference: Reference,
 }
 
@@ -62,13 +65,15 @@ impl<'a> Bench<'a> {
 
     fn ask_oracle(&mut self, task: &Task) -> Result<Vec<String>, CliError> {
         let (scene, size) = (task.scene, task.cell.size);
+        let entry = &self.suite.entries[task.entry];
+        let image = entry.technique.light_image(&entry.params)?;
         let known = self.truth.as_ref();
-        if known.is_some_and(|t| (t.scene, t.size) == (scene, size)) {
+        if known.is_some_and(|t| (t.scene, t.size, &t.image) == (scene, size, &image)) {
             return Ok(Vec::new());
         }
-        let reference = Reference::new(
+        let reference = Reference::with_light_image(
             &self.suite.scenes[scene].scene,
-            self.suite.light,
+            (self.suite.light, image.as_ref()),
             size,
             self.suite.reference,
             Some(&self.cache),
@@ -78,6 +83,7 @@ impl<'a> Bench<'a> {
         self.truth = Some(Truth {
             scene,
             size,
+            image,
             reference,
         });
         Ok(warnings)

@@ -124,9 +124,16 @@ stages! {
         soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 2,
         soft_volumes::Penumbra<coverage_table::BlendedTables>: "soft-volumes.penumbra-blended" 1,
         split_volumes::SplitPenumbra: "split-volumes.penumbra" 1,
+        split_volumes::textured::SplitTextured<coverage_table::CoverageTable>:
+            "split-volumes.textured-table" 1,
+        split_volumes::textured::SplitTextured<coverage_table::BlendedTables>:
+            "split-volumes.textured-blended" 1,
         split_volumes::resolve::ResolveSplit: "split-volumes.resolve" 1,
-        penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 1,
-        penumbra::inside::WedgeInside: "penumbra.wedge-inside" 1,
+        penumbra::face::WedgeFace: "penumbra.wedge-face" 1,
+        penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 2,
+        penumbra::inside::WedgeInside: "penumbra.wedge-inside" 2,
+        penumbra::tiles::TileClasses: "penumbra.tile-classes" 1,
+        penumbra::buffers::DepthCopy: "penumbra.depth-copy" 1,
         penumbra::buffers::TileDepths: "penumbra.tile-depths" 1,
         penumbra::buffers::Boundary: "penumbra.boundary" 1,
         penumbra::buffers::StencilCounts: "penumbra.stencil-counts" 1,
@@ -185,6 +192,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 62);
+        assert_eq!(table.fragment_shaders().count(), 64);
     }
 }

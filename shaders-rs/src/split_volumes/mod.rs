@@ -15,6 +15,7 @@
 //! leaves 10 bits of the 12.
 
 pub mod resolve;
+pub mod textured;
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::simd::each4;

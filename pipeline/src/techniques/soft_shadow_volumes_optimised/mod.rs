@@ -7,7 +7,8 @@
 //! pass that reads both, 8 bytes a pixel, and the stencil, and makes visibility of them.
 //! With `combine=sum` all casters are one group; otherwise each outline is one, with its
 //! holes, or each caster, or each loop, and what they hide together is kept in bytes
-//! between groups, as is what parts of a light show. Nothing of it is a float.
+//! between groups, as is what parts of a light show. Nothing of it is a float. Lights with
+//! an image have a pair of buffers for each colour, and inner and outer halves apart.
 //!
 //! # Departures from the paper, and why
 //!
@@ -38,6 +39,7 @@ use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::parts::volumes::light_contacts;
+use crate::parts::wedges::soft::covering::CoveringSettings;
 use crate::parts::wedges::soft::edges::SoftCasters;
 use crate::parts::wedges::soft::light::split;
 use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings};
@@ -46,6 +48,7 @@ use crate::technique::{
     Capabilities, Frame, ParamInfo, Params, SceneWedges, ShadowKind, Technique, TechniqueError,
     WedgeUse,
 };
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
 use buffers::Buffers;
 use lookups::Lookups;
@@ -68,6 +71,7 @@ impl Technique for SoftShadowVolumesOptimised {
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
             settings::PARAMS,
+            CoveringSettings::PARAMS,
             SoftSettings::PARAMS,
             FrameSettings::PARAMS
         )
@@ -89,12 +93,14 @@ impl Technique for SoftShadowVolumesOptimised {
     ) -> Result<Frame, TechniqueError> {
         let settings = OptimisedSettings::read(params)?;
         let soft = settings.soft;
+        let has_image = settings.covering.image.is_some();
+        let scene = &*settings.covering.lit(scene);
         let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
-        let frame = frame.with_horizon(self.name(), soft.horizon, false);
+        let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
         let (mut frame, positions) = frame.with_positions()?;
         let depth_stencil = frame.targets.depth_texture();
-        let mut buffers = Buffers::create(size, depth_stencil, soft.horizon, &mut frame.recording)?;
+        let mut buffers = Buffers::create(size, depth_stencil, &settings, &mut frame.recording)?;
         let mut lookups = Lookups::default();
         frame.lit(LitTest::Visibility(buffers.visibility()), |turn| {
             let (light, number) = (turn.light(), turn.number);
@@ -120,6 +126,10 @@ impl Technique for SoftShadowVolumesOptimised {
             turn.notes.warnings.extend(statistics.hole_warning(&label));
             Ok(passes)
         })
+    }
+
+    fn light_image(&self, params: &Params) -> Result<Option<LightImage>, TechniqueError> {
+        Ok(CoveringSettings::read(params)?.light_image())
     }
 
     fn wedges(

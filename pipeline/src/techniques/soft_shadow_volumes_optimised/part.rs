@@ -43,15 +43,21 @@ impl PartOfLight<'_> {
         if groups.is_empty() {
             groups.push(Default::default()); // nothing casts; the light is seen all the same
         }
-        let tables = lookups.of(&light, settings.tables, turn.recording)?;
+        let covered = lookups.of(
+            self.technique,
+            &light,
+            turn.number,
+            settings,
+            turn.recording,
+        )?;
         let mut passes = Vec::new();
         for (number, group) in groups.iter().enumerate() {
             let volumes = PartVolumes {
                 view,
                 targets: turn.targets,
                 positions: self.positions,
-                split: buffers.split,
-                tables,
+                split: buffers.split(),
+                covered,
                 light: &light,
                 settings: &settings.soft,
                 halves: settings.halves,
@@ -59,13 +65,15 @@ impl PartOfLight<'_> {
             passes.push(volumes.count_pass(turn.label("quads"), group));
             passes.extend(volumes.wedge_passes(&turn.label("wedges"), group, statistics));
             let last = number + 1 == groups.len();
-            passes.push(if last {
-                let resolve = self.resolve(number, turn, buffers)?;
-                Pass::new(PassRole::Resolve, resolve)
-            } else {
-                let combine = self.combine(number, turn, buffers)?;
-                Pass::new(PassRole::Combine, combine)
-            });
+            for colour in 0..settings.colours() {
+                passes.push(if last {
+                    let resolve = self.resolve([colour, number], turn, buffers)?;
+                    Pass::new(PassRole::Resolve, resolve)
+                } else {
+                    let combine = self.combine([colour, number], turn, buffers)?;
+                    Pass::new(PassRole::Combine, combine)
+                });
+            }
         }
         Ok(passes)
     }
@@ -73,19 +81,19 @@ impl PartOfLight<'_> {
     /// After a group that is not the last.
     fn combine(
         &self,
-        group: usize,
+        [colour, group]: [usize; 2],
         turn: &mut LightTurn<'_, '_>,
         buffers: &mut Buffers,
     ) -> Result<RenderPass, TechniqueError> {
         let shader = self.shader(group, false, ResolveTo::Groups);
         let label = turn.label("combine");
-        buffers.group_pass(label, shader, group, turn.recording)
+        buffers.group_pass(label, shader, [colour, group], turn.recording)
     }
 
     /// After the last group.
     fn resolve(
         &self,
-        group: usize,
+        [colour, group]: [usize; 2],
         turn: &mut LightTurn<'_, '_>,
         buffers: &mut Buffers,
     ) -> Result<RenderPass, TechniqueError> {
@@ -93,14 +101,16 @@ impl PartOfLight<'_> {
         let label = turn.label("resolve");
         if part + 1 < count {
             let shader = self.shader(group, part > 0, ResolveTo::Parts);
-            return buffers.part_pass(label, shader, [group, part], turn.recording);
+            return buffers.part_pass(label, shader, [colour, group, part], turn.recording);
         }
-        let to = match self.settings.soft.horizon {
-            true => ResolveTo::Share(count as u32),
-            false => ResolveTo::Bytes(count as u32),
+        let shares = self.settings.soft.horizon || self.settings.colours() > 1;
+        let to = if shares {
+            ResolveTo::Share(count as u32)
+        } else {
+            ResolveTo::Bytes(count as u32)
         };
         let shader = self.shader(group, part > 0, to);
-        Ok(buffers.visibility_pass(label, shader, [group, part]))
+        Ok(buffers.visibility_pass(label, shader, [colour, group, part]))
     }
 
     fn shader(&self, group: usize, added: bool, to: ResolveTo) -> ResolveSplit {

@@ -5,6 +5,7 @@ use gnomon_shaders::split_volumes::resolve::Combination;
 
 use crate::choices;
 use crate::geometry::wedge::Construction;
+use crate::parts::wedges::soft::covering::CoveringSettings;
 use crate::parts::wedges::soft::edges::SoftCasters;
 use crate::parts::wedges::soft::light::SoftLight;
 use crate::parts::wedges::soft::loops::Loops;
@@ -27,19 +28,26 @@ choices! {
 
 const EXTENDED: Condition = Condition::Lights(LightFact::Extended);
 
+/// Where paper III's texture is not read.
+const WITHOUT_TEXTURE: Condition = Condition::All(&[
+    EXTENDED,
+    Condition::Is("backend", &["exact"]),
+    Condition::Is("light-image", &["white"]),
+]);
+
 const COVERAGE: Param<Computed> = Param::choice(
     "coverage",
     Computed::Arithmetic.word(),
     "coverage computed, or from the paper's angle cube and area map",
 )
-.when(EXTENDED);
+.when(WITHOUT_TEXTURE);
 
 const SPLIT_BITS: Param<Computed> = Param::choice(
     "split-bits",
     Computed::Arithmetic.word(),
     "12 bits of coverage split by arithmetic, or by a 1024-entry map that leaves 10",
 )
-.when(EXTENDED);
+.when(WITHOUT_TEXTURE);
 
 impl Choice for Combination {
     const NAMES: &'static [&'static str] = &["sum", "paper", "bounded"];
@@ -99,6 +107,7 @@ pub(super) const PARAMS: &[ParamInfo] = &[
 /// What parameters decide.
 pub(super) struct OptimisedSettings {
     pub(super) tables: Tables,
+    pub(super) covering: CoveringSettings,
     pub(super) combine: Combination,
     over: CombineOver,
     pub(super) split: u32,
@@ -107,18 +116,38 @@ pub(super) struct OptimisedSettings {
 }
 
 impl OptimisedSettings {
+    /// # Errors
+    /// An image on a light that is split.
     pub(super) fn read(params: &Params) -> Result<Self, TechniqueError> {
-        Ok(Self {
+        let settings = Self {
             tables: Tables {
                 coverage: params.get(&COVERAGE)? == Computed::Lut,
                 split: params.get(&SPLIT_BITS)? == Computed::Lut,
             },
+            covering: CoveringSettings::read(params)?,
             combine: params.get(&COMBINE)?,
             over: params.get(&COMBINE_OVER)?,
             split: params.get(&SPLIT)?,
             halves: params.get(&HALVES)?,
             soft: SoftSettings::read(params)?,
-        })
+        };
+        if settings.split > 1 && settings.covering.image.is_some() {
+            let image = params.text("light-image").unwrap_or_default();
+            return Err(TechniqueError::Contradiction {
+                technique: params.technique(),
+                settings: [
+                    (SPLIT.info.name, settings.split.to_string()),
+                    ("light-image", image.to_owned()),
+                ],
+                why: "an image is of the whole light, and its coverage texture too",
+            });
+        }
+        Ok(settings)
+    }
+
+    /// How many colours are covered apart.
+    pub(super) fn colours(&self) -> usize {
+        if self.covering.image.is_some() { 3 } else { 1 }
     }
 
     /// The silhouettes that are combined, seen from the middle of a light; of all casters

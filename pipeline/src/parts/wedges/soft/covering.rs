@@ -8,6 +8,8 @@ use gnomon_raster::{Recording, TextureId};
 use gnomon_shaders::coverage::{Edge, Image};
 use gnomon_shaders::coverage_table::{BlendedTables, CoverageTable};
 use gnomon_shaders::soft_volumes::{CoverTo, ExactCoverage, HardPlane, Penumbra};
+use gnomon_shaders::split_volumes::textured::SplitTextured;
+use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
 
 use super::light::{LightSide, SoftLight};
 use super::table::{self, Contents};
@@ -331,6 +333,46 @@ impl Covering {
                 edge,
                 plane,
                 to,
+            }
+            .stage(),
+        }
+    }
+
+    /// The same split over 8-bit buffers (paper IV): coverage has to be in textures.
+    pub(crate) fn split_shader(
+        self,
+        side: &LightSide,
+        edge: Edge,
+        plane: HardPlane,
+        halves: Halves,
+        colors: u32,
+    ) -> FragmentStage {
+        let light = side.projector;
+        match self {
+            Self::Exact => SplitPenumbra {
+                light,
+                edge,
+                plane,
+                tables: Tables::default(),
+                halves,
+            }
+            .stage(),
+            Self::Table(covering, _) => SplitTextured {
+                light,
+                covering,
+                edge,
+                plane,
+                halves,
+                colors,
+            }
+            .stage(),
+            Self::Blended(covering, _) => SplitTextured {
+                light,
+                covering,
+                edge,
+                plane,
+                halves,
+                colors,
             }
             .stage(),
         }

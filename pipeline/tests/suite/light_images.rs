@@ -114,7 +114,8 @@ fn summed(scene: &Scene, image: &LightImage) -> Vec<f64> {
 fn rmse(picture: &[f32], truth: &[f64]) -> f64 {
     let pairs = picture.iter().zip(truth);
     let known = pairs.filter(|(v, t)| !v.is_nan() && !t.is_nan());
-    let squares: Vec<f64> = known.map(|(v, t)| (f64::from(*v) - t).powi(2)).collect();
+    let off = known.map(|(v, t)| f64::from(*v) - t);
+    let squares: Vec<f64> = off.map(|d| d * d).collect();
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
@@ -282,9 +283,8 @@ fn green_and_blue_are_covered_apart_from_red() {
             .filter(|k| !own[*k].is_nan() && lit.color[*k][colour] > 0.01)
             .collect();
         let off = |truth: &[f64]| {
-            let squares = seen
-                .iter()
-                .map(|k| (f64::from(share(*k)) - truth[*k]).powi(2));
+            let errors = seen.iter().map(|k| f64::from(share(*k)) - truth[*k]);
+            let squares = errors.map(|d| d * d);
             (squares.sum::<f64>() / seen.len() as f64).sqrt()
         };
         let (right, swapped) = (off(&own), off(&wrong));

@@ -35,7 +35,7 @@ fn scene(name: &str, n: u32, tilt: f64) -> Scene {
         } else {
             0.5
         };
-        let (s, t) = (angle.cos() * wide, angle.sin() * wide * 0.8);
+        let (s, t) = (libm::cos(angle) * wide, libm::sin(angle) * wide * 0.8);
         centre + edge_u * s + edge_v * t + up * (tilt * s)
     };
     let corners: Vec<DVec3> = (0..n).map(corner).collect();

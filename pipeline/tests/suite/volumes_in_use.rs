@@ -691,7 +691,10 @@ mod light_in_caster {
         for technique in ALL_SOFT {
             let done = draw(&free, technique, &[]);
             let found = truth.measure(&format!("free {technique}"), &done);
-            assert!(!warned(&done) && found.all.rmse < 0.15, "{technique}");
+            // The sphere that stands for the square in linked wedges reaches into the box.
+            let linked = [WEDGES, RESTRUCTURED].contains(&technique);
+            let limit = if linked { 0.25 } else { 0.15 };
+            assert!(!warned(&done) && found.all.rmse < limit, "{technique}");
         }
     }
 

@@ -31,6 +31,7 @@ mod paper1;
 mod paper2;
 mod paper2_range;
 mod paper2_recorded;
+mod paper2_rest;
 mod paper2_tiles;
 mod paper2_time;
 mod paper3;
@@ -146,12 +147,13 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 13] = [
+    let papers: [&'static [Claim]; 14] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
         paper2::CLAIMS,
         paper2_range::CLAIMS,
         paper2_recorded::CLAIMS,
+        paper2_rest::CLAIMS,
         paper3::CLAIMS,
         paper3_recorded::CLAIMS,
         paper4::CLAIMS,

@@ -7,7 +7,8 @@ use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use gnomon_pipeline::technique::PassRole;
 
 /// The passes of a light besides ambient, tile depths and lit.
-const WEDGES: [PassRole; 4] = [
+pub(super) const WEDGES: [PassRole; 5] = [
+    PassRole::TileClasses,
     PassRole::UmbraCaps,
     PassRole::UmbraStencil,
     PassRole::UmbraCounts,

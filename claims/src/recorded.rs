@@ -7,7 +7,7 @@ use gnomon_pipeline::technique::{PassRole, Roles};
 use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::{AccessBatch, AccessObserver, BlockAccess, PassReport};
 use gnomon_traces::profile::{Client, Judge, Profile, ProfileError, Traffic, profile};
-use gnomon_traces::{FrameShape, Meta, RecordOptions, Trace, TraceError, record};
+use gnomon_traces::{DrawShape, FrameShape, Meta, RecordOptions, Trace, TraceError, record};
 
 use super::lab::parsed;
 use super::{Lab, ReproduceError};
@@ -78,8 +78,23 @@ impl Recorded {
 
     /// What the draws of all passes that are for one of `roles` move; clears are no draws.
     pub(super) fn moved(&self, traffic: &Traffic, roles: &[PassRole], level: Level) -> Moved {
+        self.moved_by(traffic, roles, level, |_| true)
+    }
+
+    /// The same of the draws among them that `wanted` names.
+    pub(super) fn moved_by(
+        &self,
+        traffic: &Traffic,
+        roles: &[PassRole],
+        level: Level,
+        wanted: impl Fn(&DrawShape) -> bool,
+    ) -> Moved {
         let mut sum = Moved::default();
-        let rows = traffic.rows.iter().filter(|r| r.draw.is_some());
+        let draw = |pass: Option<usize>, draw: Option<usize>| {
+            self.shape.passes.get(pass?)?.draws.get(draw?)
+        };
+        let rows = traffic.rows.iter();
+        let rows = rows.filter(|r| draw(r.pass, r.draw.map(|d| d as usize)).is_some_and(&wanted));
         for row in rows.filter(|r| self.is_for(r.pass, roles)) {
             let of = |client| {
                 let levels = row.client(client);

@@ -129,8 +129,11 @@ stages! {
         split_volumes::textured::SplitTextured<coverage_table::BlendedTables>:
             "split-volumes.textured-blended" 1,
         split_volumes::resolve::ResolveSplit: "split-volumes.resolve" 1,
-        penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 1,
-        penumbra::inside::WedgeInside: "penumbra.wedge-inside" 1,
+        penumbra::face::WedgeFace: "penumbra.wedge-face" 1,
+        penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 2,
+        penumbra::inside::WedgeInside: "penumbra.wedge-inside" 2,
+        penumbra::tiles::TileClasses: "penumbra.tile-classes" 1,
+        penumbra::buffers::DepthCopy: "penumbra.depth-copy" 1,
         penumbra::buffers::TileDepths: "penumbra.tile-depths" 1,
         penumbra::buffers::Boundary: "penumbra.boundary" 1,
         penumbra::buffers::StencilCounts: "penumbra.stencil-counts" 1,

@@ -1,28 +1,28 @@
 //! What hardware with tile culling of a given size would move while it draws
 //! penumbra wedges (paper II, §4 and §7).
 //!
-//! The technique `penumbra-wedges-restructured` culls tiles in its shader, so its
-//! depth reads and the writes of its buffers are counted by the emulated GPU as
-//! that hardware would make them. What no shader can count is how often a *tile*
-//! is tested, since a shader runs per pixel. This module runs the frame with an
-//! observer, takes the pixels that every triangle covers, and repeats the tests
-//! once per triangle and tile. Its depth reads must equal the GPU's; a test holds
-//! the two together.
+//! The technique `penumbra-wedges-restructured` culls the tiles of penumbrae, so their
+//! depth reads and the writes of its buffers are counted by the emulated GPU as that
+//! hardware would make them. It tests a tile once for each wedge whose bounds it lies in,
+//! hardware once for each triangle that meets it, and it culls umbrae by blocks of its
+//! own. This module runs the frame with an observer, takes the pixels that every triangle
+//! covers, and repeats the tests once per triangle and tile. Its depth reads of penumbrae
+//! must equal the GPU's; a test holds the two together.
 //!
 //! Counted are triangles, as a rasteriser meets them: a wedge whose two visible
 //! faces share a tile tests it twice.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gnomon_raster::{
     AccessBatch, AccessObserver, Counters, Gpu, GpuConfig, SubmitReport, Subresource, Wants,
 };
-use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, Part, TileTest, WedgeInside};
 use gnomon_shaders::penumbra::plane::ScreenPlane;
+use gnomon_shaders::penumbra::tiles::{Culling, OutsideTest, TileTest};
 
 use crate::measure::render::RenderError;
 use crate::technique::{Params, Roles};
-use crate::techniques::penumbra_wedges_restructured::{WedgeDraw, build};
+use crate::techniques::penumbra_wedges_restructured::{Adds, WedgeDraw, WedgeModel, build};
 use crate::world::scene::Scene;
 
 /// Accesses of the wedge draws of one frame, all lights together.
@@ -30,6 +30,8 @@ use crate::world::scene::Scene;
 pub struct TileTraffic {
     /// Side of a tile in pixels.
     pub tile: u32,
+    /// Tiles that some triangle of a wedge meets whose tiles may be culled.
+    pub tiles_met: u64,
     /// Pairs of triangle and tile that were tested; 0 without culling.
     pub tested: u64,
     /// Of these, out of reach for all that the triangle adds.
@@ -45,6 +47,8 @@ pub struct TileTraffic {
     pub fragments: u64,
     /// Pixels whose depth is read to decide.
     pub depth_reads: u64,
+    /// Of these, by draws that add penumbrae and no umbra.
+    pub penumbra_depth_reads: u64,
     /// Read-modify-writes of light-intensity buffers.
     pub intensity_writes: u64,
     /// Read-modify-writes of the stencil: the umbra of the three-pass algorithm.
@@ -92,7 +96,7 @@ pub fn measure(
     let depth = gpu
         .texture(built.frame.outputs.depth_stencil)?
         .read_depth(Subresource::default())?;
-    let tiles = built.wedge_draws.first().map(|d| d.shader.tiles.clone());
+    let tiles = built.wedge_draws.first().map(|d| d.model.tiles.clone());
     let tiles = tiles.unwrap_or_default();
     let bounds = TileBounds::new(&depth, size, tiles.shift);
     let mut traffic = covered.count(&built.wedge_draws, &bounds);
@@ -158,24 +162,29 @@ impl Covered {
             }
         }
         let mut traffic = TileTraffic::default();
+        let mut met = BTreeSet::new();
         for ((triangle, tile), count) in pixels {
-            let shader = &draws[triangle.0 as usize].shader;
-            let space = bounds.of(tile, &shader.tiles);
-            let class = classify(shader, space);
+            let model = &draws[triangle.0 as usize].model;
+            let space = bounds.of(tile, &model.tiles);
+            let class = classify(model, space);
             traffic.fragments += count;
-            if shader.tiles.culling != Culling::None {
+            if model.tiles.culling != Culling::None {
                 traffic.tested += 1;
-                let quick = space.is_some_and(|t| beyond_any(&shader.tiles.range, &t));
+                met.insert(tile);
+                let quick = space.is_some_and(|t| beyond_any(&model.tiles.range, &t));
                 traffic.quickly_rejected += u64::from(quick);
                 traffic.culled += u64::from(class == TileClass::Culled);
                 traffic.accepted += u64::from(class == TileClass::Accepted);
-                let both = shader.tiles.culling == Culling::ZminZmax;
+                let both = model.tiles.culling == Culling::ZminZmax;
                 traffic.bound_reads += if both { 2 } else { 1 };
             }
             if class != TileClass::Culled {
                 traffic.depth_reads += count;
+                let penumbra = model.adds == Adds::Penumbra;
+                traffic.penumbra_depth_reads += if penumbra { count } else { 0 };
             }
         }
+        traffic.tiles_met = met.len() as u64;
         traffic
     }
 }
@@ -260,35 +269,38 @@ enum TileClass {
     Crossing,
 }
 
-/// The shader's test of a tile, for one box.
-fn classify(shader: &WedgeInside, tile: Option<[[f32; 2]; 3]>) -> TileClass {
-    if shader.tiles.culling == Culling::None {
+/// The test of a tile, for one box: the penumbra's as the shader has it.
+fn classify(model: &WedgeModel, tile: Option<[[f32; 2]; 3]>) -> TileClass {
+    if model.tiles.culling == Culling::None {
         return TileClass::Crossing;
     }
     let Some(tile) = tile else {
         return TileClass::Culled;
     };
-    let [front, back, first, second] = shader.planes.map(|p| p.range_in(&tile));
-    let eye_inside = shader.planes[0].eye_is_inside();
-    let umbra_culled = if eye_inside == shader.depth_fail {
-        front[1] < 0.0
+    let [front, back, first, second] = model.wedge.planes.map(|p| p.range_in(&tile));
+    let margin = model.wedge.front_margin;
+    let eye_inside = model.wedge.planes[0].eye_is_inside();
+    let umbra_culled = if eye_inside == model.depth_fail {
+        front[1] < -margin
     } else {
-        front[0] >= 0.0
+        front[0] >= margin
     };
-    let by_planes = shader.tiles.outside == OutsideTest::Planes
-        && (front[1] < 0.0 || back[1] < 0.0 || first[1] < 0.0 || second[1] <= 0.0);
-    let penumbra_culled = by_planes
-        || beyond_any(&shader.tiles.range, &tile)
-        || beyond_any(&shader.tiles.axes, &tile);
-    let inside = front[0] >= 0.0 && back[0] >= 0.0 && first[0] >= 0.0 && second[0] > 0.0;
-    let culled = match shader.part {
-        Part::Umbra => umbra_culled,
-        Part::Penumbra => penumbra_culled,
-        Part::Both => umbra_culled && penumbra_culled,
+    let bottom = model.wedge.bottom.map(|p| p.range_in(&tile));
+    let [below, partly] = [1, 0].map(|k| bottom.is_some_and(|b| b[k] < 0.0));
+    let by_planes = model.tiles.outside == OutsideTest::Planes
+        && (below || front[1] < -margin || back[1] < 0.0 || first[1] < 0.0 || second[1] <= 0.0);
+    let penumbra_culled =
+        by_planes || beyond_any(&model.tiles.range, &tile) || beyond_any(&model.tiles.axes, &tile);
+    let inside =
+        !partly && front[0] >= margin && back[0] >= 0.0 && first[0] >= 0.0 && second[0] > 0.0;
+    let culled = match model.adds {
+        Adds::Umbra => umbra_culled,
+        Adds::Penumbra => penumbra_culled,
+        Adds::Both => umbra_culled && penumbra_culled,
     };
     match culled {
         true => TileClass::Culled,
-        false if inside && shader.part != Part::Umbra => TileClass::Accepted,
+        false if inside && model.adds != Adds::Umbra => TileClass::Accepted,
         false => TileClass::Crossing,
     }
 }

@@ -24,8 +24,12 @@ pub enum PassRole {
     UmbraStencil,
     /// Counts of a stencil into a buffer.
     UmbraCounts,
+    /// Depth copied, to be read while it is attached.
+    DepthCopy,
     /// Depths of modelled tiles.
     TileDepths,
+    /// Modelled tiles that wedges reach.
+    TileClasses,
     /// Silhouettes combined.
     Combine,
     /// Buffers become visibility.

@@ -9,6 +9,7 @@ mod convolution_soft_shadows;
 mod convolution_tables;
 mod coverage_identity;
 mod data_meshes;
+mod deferred_shaders;
 mod deferred_shadowing;
 mod drawing;
 mod environment;

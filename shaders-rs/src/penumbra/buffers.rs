@@ -3,7 +3,7 @@
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::{F32, I32, Lanes, U32, uniforms};
 
-use super::FULL;
+use super::{FULL, stored_depth};
 
 /// The greatest (attachment 0) and, where there is an attachment 1, the least
 /// depth of the surfaces of each tile; one fragment a tile. Texture 0 is depth.
@@ -48,6 +48,27 @@ impl FragmentShader for TileDepths {
         let zero = F32::splat(l, 0.0);
         f.set_color(0, [greatest, zero, zero, zero]);
         f.set_color(1, [least, zero, zero, zero]);
+    }
+}
+
+/// Depth (texture 0) into attachment 0: to be read while it is attached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DepthCopy;
+uniforms!(DepthCopy);
+
+impl FragmentShader for DepthCopy {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentOutputs {
+            textures: 1,
+            ..FragmentOutputs::default()
+        }
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let zero = F32::splat(l, 0.0);
+        let depth = stored_depth(l, f, 0);
+        f.set_color(0, [depth, zero, zero, zero]);
     }
 }
 

@@ -42,8 +42,9 @@ pub struct WedgeCrossing {
     pub planes: [ScreenPlane; 4],
     /// For surfaces inside.
     pub rates: IntensityRates,
-    /// For the two side planes; `None`: 0 there, since neighbours cancel
-    /// (paper I, §5).
+    /// For the two side planes, what neighbours share. `None`: equation (3) wherever a ray
+    /// enters or leaves, on front and back planes too, and the difference rounded once, as
+    /// in the paper's pseudocode (§4): neighbours round apart.
     pub sides: Option<[SideIntensity; 2]>,
     /// 255 times the intensity at the eye, rounded; for rays that start inside.
     pub at_eye: f32,
@@ -79,6 +80,10 @@ impl FragmentShader for WedgeCrossing {
         let met = entry.q.gt(point.q) & entry.q.gt(exit.q) & surface & !misses;
         let inside = point.q.ge(exit.q);
         let gained = inside.select_f32(self.value_at(&point), exit.value) - entry.value;
+        let gained = match self.sides {
+            Some(_) => gained,
+            None => gained.round_ties_even(),
+        };
         f.discard(!met);
         let zero = F32::splat(l, 0.0);
         f.set_color(0, [gained, zero, zero, zero]);
@@ -125,12 +130,13 @@ impl WedgeCrossing {
     #[inline(always)]
     fn value_on<L: Lanes>(&self, l: L, k: usize, point: &ScreenPoint<L>, q: F32<L>) -> F32<L> {
         let zero = F32::splat(l, 0.0);
+        let at = ScreenPoint { q, ..*point };
         match (k, &self.sides) {
+            (_, None) => self.value_at(&at),
             (0, _) => F32::splat(l, FULL),
-            (1, _) | (_, None) => zero,
+            (1, _) => zero,
             (_, Some(sides)) => {
                 let side = &sides[k - 2];
-                let at = ScreenPoint { q, ..*point };
                 let front = side.between[0].at(&at).max(zero);
                 let back = side.between[1].at(&at).max(zero);
                 let s = quotient(back, front * side.back_over_front + back);
@@ -139,17 +145,21 @@ impl WedgeCrossing {
         }
     }
 
-    /// The rounded intensity at a surface inside.
+    /// The intensity at a surface inside, times 255; rounded where side planes are.
     #[inline(always)]
     fn value_at<L: Lanes>(&self, point: &ScreenPoint<L>) -> F32<L> {
         let zero = F32::splat(point.q.lanes(), 0.0);
         let [front, back, first, second] = &self.planes;
-        rounded(self.rates.intensity(&Distances {
+        let s = self.rates.intensity(&Distances {
             front: front.at(point).max(zero),
             back: back.at(point).max(zero),
             first: first.at(point).max(zero),
             second: second.at(point).max(zero),
-        }))
+        });
+        match self.sides {
+            Some(_) => rounded(s),
+            None => s * FULL,
+        }
     }
 
     #[inline(always)]

@@ -47,9 +47,23 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Asks the oracle about the task's scene, unless it was the last one asked about;
-    /// what went wrong with its cache.
+    /// Makes what the task needs and what is not timed: the truth, unless it is that of the
+    /// last task, and what the technique prepares once for a scene. What went wrong with
+    /// the folder that keeps both.
     pub(super) fn prepare(&mut self, task: &Task) -> Result<Vec<String>, CliError> {
+        let mut warnings = self.ask_oracle(task)?;
+        let entry = &self.suite.entries[task.entry];
+        let scene = &self.suite.scenes[task.scene].scene;
+        let prepared = entry
+            .technique
+            .prepare(scene, &entry.params, &self.cache, &|_| {});
+        // What is refused here the frame refuses too, which becomes the result.
+        let prepared = prepared.unwrap_or_default();
+        warnings.extend(prepared.iter().map(|w| w.to_string()));
+        Ok(warnings)
+    }
+
+    fn ask_oracle(&mut self, task: &Task) -> Result<Vec<String>, CliError> {
         let (scene, size) = (task.scene, task.cell.size);
         let entry = &self.suite.entries[task.entry];
         let image = entry.technique.light_image(&entry.params)?;
@@ -57,17 +71,11 @@ impl<'a> Bench<'a> {
         if known.is_some_and(|t| (t.scene, t.size, &t.image) == (scene, size, &image)) {
             return Ok(Vec::new());
         }
-        let Suite {
-            scenes,
-            light,
-            reference,
-            ..
-        } = self.suite;
         let reference = Reference::with_light_image(
-            &scenes[scene].scene,
-            (*light, image.as_ref()),
+            &self.suite.scenes[scene].scene,
+            (self.suite.light, image.as_ref()),
             size,
-            *reference,
+            self.suite.reference,
             Some(&self.cache),
             &|| {},
         )?;
@@ -81,9 +89,9 @@ impl<'a> Bench<'a> {
         Ok(warnings)
     }
 
-    /// Builds, draws, compares. What a technique or the GPU refuses is a result.
-    pub(super) fn measure(&mut self, task: &Task) -> Result<Stored, CliError> {
-        self.prepare(task)?;
+    /// Builds, draws, compares, once it is prepared. What a technique or the GPU refuses is a
+    /// result.
+    pub(super) fn measure(&self, task: &Task) -> Result<Stored, CliError> {
         let outcome = match self.draw(task) {
             Ok(measured) => Outcome::Measured(Box::new(measured)),
             Err(CliError::Render(refused)) => Outcome::Refused(one_line(&refused)),

@@ -48,7 +48,7 @@ fn drawn(name: &str, set: &[&str]) -> Drawn {
         .unwrap();
     let texture = gpu.texture(built.frame.outputs.depth_stencil).unwrap();
     let depth = texture.read_depth(Subresource::default()).unwrap();
-    let shift = built.wedge_draws[0].shader.tiles.shift;
+    let shift = built.wedge_draws[0].model.tiles.shift;
     Drawn {
         bounds: TileBounds::new(&depth, SIZE, shift),
         draws: built.wedge_draws,
@@ -66,12 +66,12 @@ impl Drawn {
             tiles.into_iter().map(move |(tile, _)| (f.triangle.0, tile))
         });
         pairs
-            .filter(|(d, _)| self.draws[*d as usize].shader.part == Part::Penumbra)
+            .filter(|(d, _)| self.draws[*d as usize].model.adds == Adds::Penumbra)
             .collect()
     }
 
     /// Whether a surface of the tile is inside the wedge, in f64.
-    fn holds_inside_pixel(&self, shader: &WedgeInside, [column, row]: [u32; 2]) -> bool {
+    fn holds_inside_pixel(&self, model: &WedgeModel, [column, row]: [u32; 2]) -> bool {
         let side = 1 << self.bounds.shift;
         let [width, height] = SIZE;
         let rows = row * side..height.min((row + 1) * side);
@@ -80,14 +80,14 @@ impl Drawn {
                 let depth = self.depth[(y * width + x) as usize];
                 let q = 1.0 - f64::from(depth);
                 let at = [f64::from(x) + 0.5, f64::from(y) + 0.5, q];
-                depth < 1.0 && value(shader, at) > 1e-6
+                depth < 1.0 && value(model, at) > 1e-6
             })
     }
 }
 
 /// The least plane value at (x, y, q), in f64.
-fn value(shader: &WedgeInside, at: [f64; 3]) -> f64 {
-    let planes = shader.planes.map(|p| half_space(p.0));
+fn value(model: &WedgeModel, at: [f64; 3]) -> f64 {
+    let planes = model.wedge.planes.map(|p| half_space(p.0));
     planes
         .iter()
         .map(|p| p[0] * at[0] + p[1] * at[1] + p[2] * at[2] + p[3])
@@ -102,12 +102,12 @@ fn half_space([a, b, c, d]: [f32; 4]) -> [f64; 4] {
 /// Whether the wedge and the box share a point: some corner of their common
 /// polyhedron lies in all ten half-spaces, each moved outwards by `slack` times
 /// the length of its normal over the box.
-fn overlap(shader: &WedgeInside, tile: &[[f32; 2]; 3], slack: f64) -> bool {
+fn overlap(model: &WedgeModel, tile: &[[f32; 2]; 3], slack: f64) -> bool {
     // In units of the box, so that one slack fits all.
     let extent = tile.map(|[low, high]| f64::from(high - low).max(1e-9));
     let low = tile.map(|[low, _]| f64::from(low));
     let mut spaces: Vec<[f64; 4]> = Vec::new();
-    for p in shader.planes.map(|p| half_space(p.0)) {
+    for p in model.wedge.planes.map(|p| half_space(p.0)) {
         let n = [0, 1, 2].map(|k| p[k] * extent[k]);
         let offset = p[3] + (0..3).map(|k| p[k] * low[k]).sum::<f64>();
         let length = n.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -162,22 +162,19 @@ fn culled_tiles_hold_no_inside_pixel() {
             let drawn = drawn(name, &["passes=three", tile, &axes]);
             let (mut culled, mut apart, mut pairs) = (0, 0, 0);
             for (draw, tile) in drawn.pairs() {
-                let shader = &drawn.draws[draw as usize].shader;
-                let bounds = drawn.bounds.of(tile, &shader.tiles);
+                let model = &drawn.draws[draw as usize].model;
+                let bounds = drawn.bounds.of(tile, &model.tiles);
                 pairs += 1;
                 let Some(space) = bounds else {
                     continue;
                 };
-                let separate = !overlap(shader, &space, 1e-7);
+                let separate = !overlap(model, &space, 1e-7);
                 apart += u32::from(separate);
-                if classify(shader, bounds) == TileClass::Culled {
+                if classify(model, bounds) == TileClass::Culled {
                     culled += 1;
-                    assert!(!drawn.holds_inside_pixel(shader, tile), "{name}: {tile:?}");
+                    assert!(!drawn.holds_inside_pixel(model, tile), "{name}: {tile:?}");
                     // Shrunk a little: touching is not sharing.
-                    assert!(
-                        !overlap(shader, &space, -1e-4),
-                        "{name}: {tile:?} {space:?}"
-                    );
+                    assert!(!overlap(model, &space, -1e-4), "{name}: {tile:?} {space:?}");
                 }
             }
             eprintln!("{name}, {axes}: {pairs} pairs, {apart} apart in f64, {culled} culled");
@@ -202,11 +199,11 @@ fn culled_tiles_hold_no_inside_pixel() {
 fn negative_control_tiles_that_are_kept_hold_inside_pixels() {
     let drawn = drawn("columns", &["passes=three", "tile=8"]);
     let kept = drawn.pairs().into_iter().filter(|(draw, tile)| {
-        let shader = &drawn.draws[*draw as usize].shader;
-        classify(shader, drawn.bounds.of(*tile, &shader.tiles)) != TileClass::Culled
+        let model = &drawn.draws[*draw as usize].model;
+        classify(model, drawn.bounds.of(*tile, &model.tiles)) != TileClass::Culled
     });
     let holding = kept
-        .filter(|(draw, tile)| drawn.holds_inside_pixel(&drawn.draws[*draw as usize].shader, *tile))
+        .filter(|(draw, tile)| drawn.holds_inside_pixel(&drawn.draws[*draw as usize].model, *tile))
         .count();
     assert!(holding > 100, "{holding}");
 }

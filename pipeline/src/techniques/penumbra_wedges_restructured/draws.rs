@@ -8,13 +8,12 @@ use gnomon_raster::state::{
 };
 use gnomon_raster::{RenderPipeline, TextureBinding, VertexBuffer};
 use gnomon_shaders::penumbra::FULL;
-use gnomon_shaders::penumbra::inside::{Part, WedgeInside};
-use gnomon_shaders::penumbra::intensity::IntensityRates;
-use gnomon_shaders::penumbra::plane::ScreenPlane;
+use gnomon_shaders::penumbra::inside::{FrontTest, WedgeInside};
+use gnomon_shaders::penumbra::tiles::{Culling, TileLookUp, TileTest, WedgePlanes};
 use gnomon_shaders::transform::HomogeneousPoints;
 
-use super::InsideDraws;
-use super::list::{LightDraws, Shaded};
+use super::list::LightDraws;
+use super::{Adds, InsideDraws, WedgeModel};
 use crate::geometry::wedge::paper1::LinkedWedge;
 use crate::parts::casters::Examined;
 use crate::parts::passes::{self, View};
@@ -26,7 +25,7 @@ use crate::parts::wedges::penumbra::light::{self, LightSphere};
 use crate::parts::wedges::penumbra::report::LinkedReport;
 use crate::parts::wedges::penumbra::shape::{self, Faces, WedgeShape};
 use crate::parts::wedges::penumbra::volume::SoftVolume;
-use crate::parts::wedges::penumbra::{axes, screen};
+use crate::parts::wedges::penumbra::{axes, reach, screen};
 use crate::technique::{CasterUse, VolumeMethod};
 use crate::world::scene::Scene;
 
@@ -59,23 +58,39 @@ impl InsideDraws<'_> {
         let warning = light::point_warning(turn.number, points.len());
         turn.notes.warnings.extend(warning);
         for caster in others {
-            let volume = caster.soft_volume(sphere, &settings, &mut report);
+            let volume = caster.soft_volume(sphere, &settings, self.choices.length, &mut report);
             let method = self
                 .choices
                 .forced
                 .unwrap_or_else(|| choose(turn.scene, self.size, caster, &volume));
+            self.caps(view, caster, &volume, method, draws);
             if method == Method::DepthFail {
-                self.caps(view, caster, &volume, draws);
                 draws.start -= FULL * volume.all_around as f32;
             }
-            for wedge in &volume.wedges {
-                self.wedge(view, &caster.object.name, wedge, method, draws);
+            for (k, wedge) in volume.wedges.iter().enumerate() {
+                let drawn = Drawn {
+                    label: &caster.object.name,
+                    wedge,
+                    planes: self.screen.wedge_planes(view, wedge, &volume.ends[k]),
+                    shape: WedgeShape::new(view, volume.parts(k)),
+                    method,
+                };
+                self.wedge(view, &drawn, draws);
             }
             for gap in &volume.gaps {
+                let plane = self.screen.plane(view, &gap.plane);
+                let model = WedgeModel {
+                    wedge: WedgePlanes {
+                        planes: [plane; 4],
+                        front_margin: self.screen.depth_margin(&plane),
+                        bottom: None,
+                    },
+                    adds: Adds::Umbra,
+                    depth_fail: method == Method::DepthFail,
+                    tiles: self.choices.tiles.clone(),
+                };
                 let faces = shape::triangles(view, &gap.triangles);
-                let planes = [self.screen.plane(view, &gap.plane); 4];
-                let shader = self.shader(view, planes, None, Part::Umbra, method);
-                self.umbra(view, "gap", &faces, shader, draws);
+                self.umbra(view, "gap", (&faces, CullMode::None), &model, draws);
             }
             let bottom = volume.bottom.len();
             let sides = 2 * volume.wedges.len() + volume.gaps.len();
@@ -114,70 +129,87 @@ impl InsideDraws<'_> {
         turn.notes.casters.push(used);
     }
 
-    /// Top, patches and bottom of a volume, for z-fail.
+    /// What closes a volume besides its sides: for z-fail top, patches and bottom; for
+    /// z-pass the bottom where it is not at infinity.
     fn caps(
         &self,
         view: &View,
         caster: &Examined<'_>,
         volume: &SoftVolume,
+        method: Method,
         draws: &mut LightDraws,
     ) {
-        let mesh = &caster.object.mesh;
-        // The caster's own vertices, as the scene draws them: equal depth.
-        let points = mesh.positions().iter().map(|p| view.point(*p));
-        let top = Faces {
-            vertices: Arc::new(VertexBuffer {
-                data: points.flat_map(|[x, y, z]| [x, y, z, 1.0]).collect(),
-                stride: 4,
-            }),
-            indices: passes::index_buffer(&volume.cap),
-        };
-        let patches = shape::triangles(view, &volume.patches);
-        let bottom = shape::triangles(view, &volume.bottom);
+        let fail = method == Method::DepthFail;
+        let ends = volume.ends_somewhere;
+        let bottom = (fail || ends).then(|| shape::triangles(view, &volume.bottom));
+        let top = fail.then(|| top(view, caster, volume));
+        let patches = fail.then(|| shape::triangles(view, &volume.patches));
         for (label, faces) in [("top", top), ("patches", patches), ("bottom", bottom)] {
-            if faces.indices.indices().is_empty() {
+            let Some(faces) = faces.filter(|f| !f.indices.indices().is_empty()) else {
                 continue;
-            }
-            let mut pipeline = hard::boundary_pipeline(label, view, Method::DepthFail);
+            };
+            let mut pipeline = hard::boundary_pipeline(label, view, method);
             if self.choices.three {
-                pipeline = into_stencil(pipeline, Method::DepthFail);
+                pipeline = into_stencil(pipeline, method);
             }
             draws.tested.push(faces.draw(label, pipeline, Vec::new()));
         }
     }
 
-    fn wedge(
-        &self,
-        view: &View,
-        label: &str,
-        wedge: &LinkedWedge,
-        method: Method,
-        draws: &mut LightDraws,
-    ) {
-        let shape = WedgeShape::new(view, wedge);
-        let planes = self.screen.wedge(view, wedge);
-        let shader = |part| self.shader(view, planes, Some(wedge), part, method);
-        // Faces through which the penumbra is drawn, and the other facing.
-        let (drawn, other) = match method {
-            Method::DepthPass => (CullMode::Back, CullMode::Front),
-            Method::DepthFail => (CullMode::Front, CullMode::Back),
+    /// The wedge by its faces on the front plane's side of the eye: which they are does
+    /// not depend on the method, since both cover the same pixels.
+    fn wedge(&self, view: &View, drawn: &Drawn<'_>, draws: &mut LightDraws) {
+        let Drawn {
+            label,
+            wedge,
+            planes,
+            shape,
+            method,
+        } = drawn;
+        let leaves = planes.planes[0].eye_is_inside();
+        let (facing, other) = match leaves {
+            false => (CullMode::Back, CullMode::Front),
+            true => (CullMode::Front, CullMode::Back),
         };
-        match &shape.others {
-            Some(others) if !self.choices.three => {
-                let all = [
-                    (&shape.front, drawn, Part::Both),
-                    (&shape.front, other, Part::Umbra),
-                    (others, drawn, Part::Penumbra),
-                ];
-                let shaded =
-                    all.map(|(f, cull, part)| self.shaded(view, label, f, cull, shader(part)));
-                draws.intensity.extend(shaded);
-            }
-            _ => {
-                self.umbra(view, label, &shape.front, shader(Part::Umbra), draws);
-                let penumbra = self.shaded(view, label, &shape.all, drawn, shader(Part::Penumbra));
-                draws.intensity.push(penumbra);
-            }
+        let model = |adds| WedgeModel {
+            wedge: *planes,
+            adds,
+            depth_fail: *method == Method::DepthFail,
+            tiles: self.tests(view, wedge, shape),
+        };
+        let both = !self.choices.three && leaves == (*method == Method::DepthFail);
+        let boundary = (&shape.front, if both { other } else { CullMode::None });
+        self.umbra(view, label, boundary, &model(Adds::Umbra), draws);
+        if let Some(beyond) = &shape.beyond {
+            let boundary = (beyond, CullMode::None);
+            self.umbra(view, label, boundary, &model(Adds::Umbra), draws);
+        }
+        let Some(pixels) = reach::pixels(view, &shape.whole, self.size) else {
+            return;
+        };
+        let classes = self.classes(pixels, &model(Adds::Penumbra), draws);
+        let of_front = match (both, leaves) {
+            (true, _) => FrontTest::Counted,
+            (false, false) => FrontTest::Entered,
+            (false, true) => FrontTest::Left,
+        };
+        for (faces, front) in [
+            (&shape.front, of_front),
+            (&shape.others, FrontTest::Implied),
+        ] {
+            let shader = WedgeInside {
+                wedge: *planes,
+                rates: screen::rates(wedge, self.choices.penumbra.interpolation),
+                front,
+                classes,
+            };
+            let adds = match front {
+                FrontTest::Counted => Adds::Both,
+                _ => Adds::Penumbra,
+            };
+            let pipeline = penumbra_pipeline(view, facing, *method, &shader);
+            let draw = faces.draw(label, pipeline, self.bindings());
+            draws.wedges().push((draw, Some(model(adds))));
         }
     }
 
@@ -186,81 +218,107 @@ impl InsideDraws<'_> {
         &self,
         view: &View,
         label: &str,
-        faces: &Faces,
-        shader: WedgeInside,
+        (faces, cull): (&Faces, CullMode),
+        model: &WedgeModel,
         draws: &mut LightDraws,
     ) {
+        let method = match model.depth_fail {
+            true => Method::DepthFail,
+            false => Method::DepthPass,
+        };
+        let pipeline = |cull_mode| {
+            let mut pipeline = hard::boundary_pipeline("umbra", view, method);
+            pipeline.primitive.cull_mode = cull_mode;
+            pipeline
+        };
         if !self.choices.three {
-            let draw = self.shaded(view, label, faces, CullMode::None, shader);
-            draws.intensity.push(draw);
+            let draw = faces.draw(label, pipeline(cull), Vec::new());
+            draws.wedges().push((draw, Some(model.clone())));
             return;
         }
-        let method = if shader.depth_fail {
-            Method::DepthFail
-        } else {
-            Method::DepthPass
+        // Hardware as there was draws these: no modelled tiles are culled.
+        let model = WedgeModel {
+            tiles: TileTest {
+                culling: Culling::None,
+                ..model.tiles.clone()
+            },
+            ..model.clone()
         };
-        for (pass, cull) in draws
-            .umbra
-            .iter_mut()
-            .zip([CullMode::Back, CullMode::Front])
-        {
-            let mut pipeline = pipeline(view, cull, &shader);
-            pipeline.color_targets.clear();
-            pipeline.depth_stencil.stencil = counted(method);
-            let draw = faces.draw(label, pipeline, self.bindings());
-            pass.push((draw, Some(shader.clone())));
+        let facings = [CullMode::Back, CullMode::Front];
+        for (pass, cull) in draws.umbra.iter_mut().zip(facings) {
+            let pipeline = into_stencil(pipeline(cull), method);
+            let draw = faces.draw(label, pipeline, Vec::new());
+            pass.push((draw, Some(model.clone())));
         }
     }
 
-    fn shader(
-        &self,
-        view: &View,
-        planes: [ScreenPlane; 4],
-        wedge: Option<&LinkedWedge>,
-        part: Part,
-        method: Method,
-    ) -> WedgeInside {
-        let interpolation = self.choices.penumbra.interpolation;
+    /// What tiles are tested against for a wedge.
+    fn tests(&self, view: &View, wedge: &LinkedWedge, shape: &WedgeShape) -> TileTest {
         let mut tiles = self.choices.tiles.clone();
-        if let Some(wedge) = wedge.filter(|_| part != Part::Umbra) {
-            let wanted = self.choices.axes;
-            if wanted.range {
-                tiles.range = axes::of_depth(view, wedge, self.size);
-            }
-            if wanted.edges {
-                tiles.axes = axes::of_edges(&self.screen, view, wedge, self.size);
-            }
+        let wanted = self.choices.axes;
+        if wanted.range {
+            let vertices = shape.whole.iter().flatten().copied();
+            tiles.range = axes::of_depth(view, vertices, self.size);
         }
-        let none = IntensityRates {
-            back_over_front: [1.0; 2],
-            first_over_second: 1.0,
-            interpolation,
-        };
-        WedgeInside {
-            planes,
-            rates: wedge.map_or(none, |w| screen::rates(w, interpolation)),
-            part,
-            depth_fail: method == Method::DepthFail,
-            tiles,
+        if wanted.edges {
+            tiles.axes = axes::of_edges(&self.screen, view, wedge, self.size);
         }
+        tiles
     }
 
-    fn shaded(
+    /// Has the tiles under `pixels` classified before the wedge is drawn.
+    fn classes(
         &self,
-        view: &View,
-        label: &str,
-        faces: &Faces,
-        cull: CullMode,
-        shader: WedgeInside,
-    ) -> Shaded {
-        let pipeline = pipeline(view, cull, &shader);
-        let draw = faces.draw(label, pipeline, self.bindings());
-        (draw, Some(shader))
+        pixels: [[u32; 2]; 2],
+        model: &WedgeModel,
+        draws: &mut LightDraws,
+    ) -> Option<TileLookUp> {
+        if model.tiles.culling == Culling::None {
+            return None;
+        }
+        let atlas = self.atlas?;
+        let tested = (&model.wedge, &model.tiles);
+        let place = |draws: &mut LightDraws| {
+            atlas.place(&mut draws.batch().shelves, pixels, tested, &self.bounds)
+        };
+        // A new batch holds any wedge: the atlas is larger than the image.
+        let placed = place(draws).or_else(|| {
+            draws.next_batch();
+            place(draws)
+        })?;
+        draws.batch().classes.push(placed.draw);
+        Some(placed.look_up)
     }
 
     fn bindings(&self) -> Vec<TextureBinding> {
         self.inputs.iter().map(|&t| binding(t)).collect()
+    }
+}
+
+/// A wedge that is drawn.
+struct Drawn<'a> {
+    label: &'a str,
+    wedge: &'a LinkedWedge,
+    planes: WedgePlanes,
+    shape: WedgeShape,
+    method: Method,
+}
+
+/// The light-facing triangles of a caster.
+fn top(view: &View, caster: &Examined<'_>, volume: &SoftVolume) -> Faces {
+    // The caster's own vertices, as the scene draws them: equal depth.
+    let points = caster
+        .object
+        .mesh
+        .positions()
+        .iter()
+        .map(|p| view.point(*p));
+    Faces {
+        vertices: Arc::new(VertexBuffer {
+            data: points.flat_map(|[x, y, z]| [x, y, z, 1.0]).collect(),
+            stride: 4,
+        }),
+        indices: passes::index_buffer(&volume.cap),
     }
 }
 
@@ -288,21 +346,29 @@ fn choose(scene: &Scene, size: [u32; 2], caster: &Examined<'_>, volume: &SoftVol
     }
 }
 
-fn pipeline(view: &View, cull_mode: CullMode, shader: &WedgeInside) -> RenderPipeline {
-    let label = match shader.part {
-        Part::Umbra => "umbra",
-        Part::Penumbra => "penumbra",
-        Part::Both => "umbra and penumbra",
-    };
+/// State of a wedge's faces. Depth is tested only where the test counts the umbra too.
+fn penumbra_pipeline(
+    view: &View,
+    cull_mode: CullMode,
+    method: Method,
+    shader: &WedgeInside,
+) -> RenderPipeline {
+    let counts = shader.front == FrontTest::Counted;
     RenderPipeline {
-        label: label.to_owned(),
+        label: match counts {
+            true => "umbra and penumbra".to_owned(),
+            false => "penumbra".to_owned(),
+        },
         vertex: HomogeneousPoints(view.clip_from_world).stage(),
-        fragment: Some(shader.clone().stage()),
+        fragment: Some(shader.stage()),
         primitive: PrimitiveState {
             cull_mode,
             ..passes::clamped()
         },
-        depth_stencil: DepthStencilState::default(),
+        depth_stencil: match counts {
+            true => method.depth_test(),
+            false => DepthStencilState::default(),
+        },
         color_targets: vec![ColorTargetState::ADDITIVE],
     }
 }

@@ -2,15 +2,15 @@
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
-    DepthStencilAttachment, Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, StoreOp,
-    Subresource, TextureDescriptor, TextureId,
+    Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
 };
 use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::buffers::{StencilCounts, TileDepths};
-use gnomon_shaders::penumbra::inside::{Culling, WedgeInside};
+use gnomon_shaders::penumbra::tiles::Culling;
 use gnomon_shaders::transform::FullScreen;
 
-use super::{Choices, InsideDraws, WedgeDraw};
+use super::atlas::Shelves;
+use super::{Choices, InsideDraws, WedgeDraw, WedgeModel};
 use crate::parts::passes::Targets;
 use crate::parts::shadowed_frame::LightTurn;
 use crate::parts::visibility::{attachment, binding, full_screen};
@@ -19,8 +19,19 @@ use crate::parts::wedges::penumbra;
 use crate::parts::wedges::penumbra::light::{self, LightSphere};
 use crate::technique::{Pass, PassRole, TechniqueError};
 
-/// A draw with the wedge shader that it runs, if it does.
-pub(super) type Shaded = (Draw, Option<WedgeInside>);
+/// A draw with what it does of a wedge, if it does.
+pub(super) type Shaded = (Draw, Option<WedgeModel>);
+
+/// Wedges whose tiles' classes fit into the atlas together.
+#[derive(Default)]
+pub(super) struct Batch {
+    /// What of the atlas is taken.
+    pub(super) shelves: Shelves,
+    /// Find the classes.
+    pub(super) classes: Vec<Draw>,
+    /// Use them.
+    pub(super) wedges: Vec<Shaded>,
+}
 
 /// The draws of one light by the pass that they belong to.
 pub(super) struct LightDraws {
@@ -31,8 +42,8 @@ pub(super) struct LightDraws {
     pub(super) tested: Vec<Draw>,
     /// Boundaries of the umbra by facing, for the stencil.
     pub(super) umbra: [Vec<Shaded>; 2],
-    /// Everything else.
-    pub(super) intensity: Vec<Shaded>,
+    /// Everything else; at least one.
+    batches: Vec<Batch>,
     /// The light has no extent: there are only volumes in `tested`.
     pub(super) hard: bool,
 }
@@ -43,14 +54,33 @@ impl Default for LightDraws {
             start: FULL,
             tested: Vec::new(),
             umbra: [Vec::new(), Vec::new()],
-            intensity: Vec::new(),
+            batches: vec![Batch::default()],
             hard: false,
         }
     }
 }
 
+impl LightDraws {
+    /// The batch that wedges are put into.
+    pub(super) fn batch(&mut self) -> &mut Batch {
+        if self.batches.is_empty() {
+            self.next_batch();
+        }
+        let last = self.batches.len() - 1;
+        &mut self.batches[last]
+    }
+
+    pub(super) fn wedges(&mut self) -> &mut Vec<Shaded> {
+        &mut self.batch().wedges
+    }
+
+    pub(super) fn next_batch(&mut self) {
+        self.batches.push(Batch::default());
+    }
+}
+
 impl InsideDraws<'_> {
-    /// The passes of a light; `wedge_draws` gets the wedge shaders in them.
+    /// The passes of a light; `wedge_draws` gets what they do of wedges.
     pub(super) fn light_passes(
         &self,
         buffer: TextureId,
@@ -58,14 +88,16 @@ impl InsideDraws<'_> {
         wedge_draws: &mut Vec<WedgeDraw>,
     ) -> Vec<Pass> {
         let (light, source) = (turn.number, turn.light());
-        turn.notes
-            .warnings
-            .extend(light::substitution(light, source));
+        turn.notes.warnings.extend(light::substitution(
+            light,
+            source,
+            self.choices.penumbra.light_as,
+        ));
         turn.notes
             .warnings
             .extend(light_contacts::warning(turn.scene, light));
         let mut draws = LightDraws::default();
-        match LightSphere::of(source) {
+        match LightSphere::of(source, self.choices.penumbra.light_as) {
             None => self.hard_light(turn, &mut draws),
             Some(sphere) => self.soft_light(turn, &sphere, &mut draws),
         }
@@ -101,8 +133,31 @@ impl InsideDraws<'_> {
             load = LoadOp::Load;
         }
         if !draws.hard {
-            let pass = penumbra::intensity_pass(turn.label("wedges"), buffer, load);
-            list.push(Shading::of(PassRole::Wedges, pass, draws.intensity));
+            list.extend(self.wedge_passes("wedges", buffer, load, draws.batches, turn));
+        }
+        list
+    }
+
+    /// For each batch the classes of its tiles, if tiles are culled, and its wedges.
+    fn wedge_passes(
+        &self,
+        label: &str,
+        buffer: TextureId,
+        first: LoadOp<[f32; 4]>,
+        batches: Vec<Batch>,
+        turn: &LightTurn<'_, '_>,
+    ) -> Vec<Shading> {
+        let mut load = first;
+        let mut list = Vec::new();
+        for batch in batches {
+            if let Some(atlas) = self.atlas.filter(|_| !batch.classes.is_empty()) {
+                let pass = atlas.pass(turn.label("tile classes"), batch.classes);
+                list.push(Shading::plain(PassRole::TileClasses, pass));
+            }
+            let mut pass = penumbra::intensity_pass(turn.label(label), buffer, load);
+            pass.depth_stencil = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Load);
+            list.push(Shading::of(PassRole::Wedges, pass, batch.wedges));
+            load = LoadOp::Load;
         }
         list
     }
@@ -116,84 +171,69 @@ impl InsideDraws<'_> {
         turn: &LightTurn<'_, '_>,
     ) -> Vec<Shading> {
         let mut list = Vec::new();
-        let mut counts: Vec<TextureId> = self.umbra_stencil.into_iter().collect();
-        let only_stencil = |label: &str, depth_stencil| RenderPass {
+        let only_stencil = |label: &str, stencil: LoadOp<u8>| RenderPass {
             label: turn.label(label),
             color: Vec::new(),
-            depth_stencil,
+            depth_stencil: turn.targets.depth_stencil(LoadOp::Load, stencil),
             draws: Vec::new(),
         };
+        let mut load = LoadOp::Clear(0);
         if !draws.tested.is_empty() {
-            let scene = turn.targets.depth_stencil(LoadOp::Load, LoadOp::Clear(0));
-            let mut pass = only_stencil("umbra caps", scene);
+            let mut pass = only_stencil("umbra caps", load);
             pass.draws = draws.tested;
             list.push(Shading::plain(PassRole::UmbraCaps, pass));
-            counts.push(turn.targets.depth_texture());
+            load = LoadOp::Load;
         }
         let [front, back] = draws.umbra;
-        let front_stencil = self.umbra_attachment(LoadOp::Clear(0));
-        let pass = only_stencil("umbra front", front_stencil);
+        let pass = only_stencil("umbra front", load);
         list.push(Shading::of(PassRole::UmbraStencil, pass, front));
-        let back_stencil = self.umbra_attachment(LoadOp::Load);
-        let pass = only_stencil("umbra back", back_stencil);
+        let pass = only_stencil("umbra back", LoadOp::Load);
         list.push(Shading::of(PassRole::UmbraStencil, pass, back));
         let start = penumbra::cleared(draws.start);
         let mut pass = penumbra::intensity_pass(turn.label("umbra counts"), buffer, start);
-        pass.draws = vec![add_counts(&counts)];
+        pass.draws = vec![add_counts(turn.targets.depth_texture())];
         list.push(Shading::plain(PassRole::UmbraCounts, pass));
-        let pass = penumbra::intensity_pass(turn.label("penumbra"), buffer, LoadOp::Load);
-        list.push(Shading::of(PassRole::Wedges, pass, draws.intensity));
+        list.extend(self.wedge_passes("penumbra", buffer, LoadOp::Load, draws.batches, turn));
         list
-    }
-
-    fn umbra_attachment(&self, stencil: LoadOp<u8>) -> Option<DepthStencilAttachment> {
-        self.umbra_stencil.map(|texture| DepthStencilAttachment {
-            texture,
-            subresource: Subresource::default(),
-            depth_load: LoadOp::DontCare,
-            depth_store: StoreOp::Discard,
-            stencil_load: stencil,
-            stencil_store: StoreOp::Store,
-        })
     }
 }
 
-/// A pass, and the wedge shaders of its draws.
+/// A pass, and what its draws do of wedges.
 struct Shading {
     pass: Pass,
-    shaders: Vec<Option<WedgeInside>>,
+    models: Vec<Option<WedgeModel>>,
 }
 
 impl Shading {
-    /// Without wedge shaders.
+    /// Without wedges.
     fn plain(role: PassRole, pass: RenderPass) -> Self {
         Self {
             pass: Pass::new(role, pass),
-            shaders: Vec::new(),
+            models: Vec::new(),
         }
     }
 
     /// `pass` with these draws.
     fn of(role: PassRole, mut pass: RenderPass, draws: Vec<Shaded>) -> Self {
-        let (draws, shaders) = draws.into_iter().unzip();
+        let (draws, models) = draws.into_iter().unzip();
         pass.draws = draws;
         Self {
             pass: Pass::new(role, pass),
-            shaders,
+            models,
         }
     }
 }
 
-/// Notes where the wedge shaders are, behind `passes_before` other passes, and takes
+/// Notes where wedges are drawn, behind `passes_before` other passes, and takes
 /// them off.
 fn note(list: Vec<Shading>, passes_before: usize, wedge_draws: &mut Vec<WedgeDraw>) -> Vec<Pass> {
     let mut passes = Vec::with_capacity(list.len());
-    for Shading { pass, shaders } in list {
+    for Shading { pass, models } in list {
         let at = passes_before + passes.len();
-        for (draw, shader) in shaders.into_iter().enumerate() {
-            wedge_draws.extend(shader.map(|shader| WedgeDraw {
+        for (draw, model) in models.into_iter().enumerate() {
+            wedge_draws.extend(model.map(|model| WedgeDraw {
                 at: [at, draw],
-                shader,
+                model,
             }));
         }
         passes.push(pass);
@@ -201,11 +241,9 @@ fn note(list: Vec<Shading>, passes_before: usize, wedge_draws: &mut Vec<WedgeDra
     passes
 }
 
-/// Adds 255 times the stencil counts of `textures` everywhere.
-fn add_counts(textures: &[TextureId]) -> Draw {
-    let shader = StencilCounts {
-        textures: textures.len(),
-    };
+/// Adds 255 times the stencil counts of a texture everywhere.
+fn add_counts(texture: TextureId) -> Draw {
+    let shader = StencilCounts { textures: 1 };
     let pipeline = RenderPipeline {
         label: "umbra counts".into(),
         vertex: FullScreen.stage(),
@@ -214,7 +252,7 @@ fn add_counts(textures: &[TextureId]) -> Draw {
         depth_stencil: DepthStencilState::default(),
         color_targets: vec![ColorTargetState::ADDITIVE],
     };
-    full_screen(pipeline, textures.iter().map(|&t| binding(t)).collect())
+    full_screen(pipeline, vec![binding(texture)])
 }
 
 /// The pass that finds zmax, and zmin where it is wanted, of all tiles; and their
@@ -256,18 +294,4 @@ pub(super) fn tile_depths(
         )],
     };
     Ok(Some((Pass::new(PassRole::TileDepths, pass), bounds)))
-}
-
-/// The stencil of the three-pass algorithm; its depth is not used.
-pub(super) fn umbra_stencil(
-    choices: &Choices,
-    [width, height]: [u32; 2],
-    recording: &mut Recording,
-) -> Result<Option<TextureId>, TechniqueError> {
-    if !choices.three {
-        return Ok(None);
-    }
-    let format = Format::Depth24Stencil8;
-    let desc = TextureDescriptor::d2("umbra stencil", format, width, height);
-    Ok(Some(recording.create(&desc)?))
 }

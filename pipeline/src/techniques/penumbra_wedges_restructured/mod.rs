@@ -9,34 +9,42 @@
 //! # Passes
 //!
 //! `passes=three` (§6.1): front faces of the umbra's boundary into an 8-bit
-//! stencil, back faces, then the penumbrae. The stencil wraps and is read as a
-//! signed byte: 127 nested umbrae. `passes=single` (§6.2): front planes add umbra
-//! and penumbra at once wherever the same facing carries both; where the side
-//! planes of a wedge meet, its front face is not all of the boundary, and the two
-//! stay apart. Both give the same bits.
+//! stencil, back faces, both by the ordinary depth test; then the penumbrae. The stencil
+//! wraps and is read as a signed byte: 127 nested umbrae. `passes=single` (§6.2): front
+//! planes add umbra and penumbra at once wherever one depth test decides both, else the
+//! two stay apart. Both give the same bits.
+//!
+//! Penumbrae are drawn by the faces of a wedge on the front plane's side, those that rays
+//! enter or those that they leave, whichever the front face is one of. The paper takes the
+//! first for z-pass and the others for z-fail; both cover the same pixels, and so the one
+//! face whose depth decides the umbra decides the penumbra too: no surface is counted by
+//! one and missed by the other, though vertices are snapped and depth is rounded.
 //!
 //! # Where the eye may be
 //!
 //! `zpass` counts boundaries between eye and surface; the eye must be outside
 //! every wedge and umbra. `zfail` counts those beyond, with the light-facing
-//! triangles as top and a cap at infinity as bottom, and draws back faces of the
-//! wedges; the bottom of a wedge closes it at infinity. `auto` decides per caster.
-//! (The paper's "back facing planes are chosen in rasterizeUmbra()" must read
-//! rasterizePenumbra().)
+//! triangles as top and a cap at infinity as bottom; the bottom of a wedge closes it at
+//! infinity. `auto` decides per caster. (The paper's "back facing planes are chosen in
+//! rasterizeUmbra()" must read rasterizePenumbra().)
 //!
 //! # Culling and what is counted
 //!
-//! Tiles of `tile` pixels a side are a model, apart from the execution tiles: one
-//! pass reduces depth to zmin and zmax of each tile, and the shader tests the
-//! tile's box against the wedge's planes before it reads depth. So the depth reads
-//! (texture 0), the reads and writes of the buffer and of the stencil that are
-//! counted are those of hardware that culls tiles of that size. Only the reads of
-//! zmin and zmax differ: here each fragment reads them (textures 1 and 2),
-//! hardware once per triangle and tile; [`crate::measure::tile_traffic`] counts these.
-//! Culling changes no bit of any buffer.
+//! Tiles of `tile` pixels a side are a model, apart from the execution tiles. One pass
+//! reduces depth to zmin and zmax of each tile. Before the wedges are drawn, a pass tests
+//! each wedge's tiles, a fragment for each (`tiles-tested` in the report's shader counts),
+//! and their pixels look the outcome up (texture 1) before they read depth (texture 0: a
+//! copy, since depth is attached). So the depth reads of penumbrae that are counted are
+//! those of hardware that culls tiles of that size. Umbrae are culled by the emulated GPU's
+//! own blocks of 8x8. How often hardware would test a tile, once for each triangle, is
+//! counted by [`crate::measure::tile_traffic`]. Culling changes no bit of any buffer.
 //!
-//! Pixels without surface (depth 1) belong to no umbra and no wedge and are left
-//! out of zmin and zmax: one pixel of sky would stretch its tile to infinity.
+//! `wedge-length` ends shadows in a plane that far behind each silhouette, square to the light's
+//! direction, as the paper's end; the bottom is then counted by z-pass too. What lies beyond
+//! is lit. Surfaces in that very plane may show single wrong pixels.
+//!
+//! Pixels without surface (depth 1) belong to no wedge and are left out of zmin and zmax:
+//! one pixel of sky would stretch its tile to infinity.
 //!
 //! # Where it is wrong
 //!
@@ -46,23 +54,27 @@
 //! `overlapping-side-planes`. That is the algorithm (paper II, §1), not rounding:
 //! the buffer holds the sum that the paper defines.
 
+mod atlas;
 mod draws;
 mod list;
 
 use gnomon_raster::TextureId;
-use gnomon_shaders::penumbra::inside::{Culling, OutsideTest, TileTest, WedgeInside};
+use gnomon_shaders::penumbra::tiles::{Culling, OutsideTest, TileTest, WedgePlanes};
+
+use atlas::Atlas;
 
 use crate::parts::casters::{self, Examined};
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::parts::volumes::volume_draws::CountMethod;
+use crate::parts::wedges::penumbra::depth_copy;
 use crate::parts::wedges::penumbra::hard::Method;
 use crate::parts::wedges::penumbra::screen::Screen;
 use crate::parts::wedges::penumbra::{self, PenumbraSettings};
 use crate::technique::{
-    Capabilities, Choice, Condition, Frame, LightFact, Param, ParamInfo, Params, SceneWedges,
-    ShadowKind, Technique, TechniqueError, WedgeUse,
+    Capabilities, Choice, Condition, Decimals, Frame, LightFact, Param, ParamInfo, Params,
+    SceneWedges, ShadowKind, Technique, TechniqueError, WedgeUse,
 };
 use crate::world::scene::Scene;
 use crate::{choices, param_list};
@@ -138,6 +150,17 @@ const AXES: Param<SeparatingAxis> = Param::choice(
     Condition::Lights(LightFact::Extended),
 ]));
 
+const LENGTH: Param<Option<f64>> = Param::decimal_or(
+    &["infinite"],
+    "wedge-length",
+    Decimals {
+        low: 0.0,
+        with_low: true,
+    },
+    "how far behind its silhouette a shadow ends, in world units: what lies beyond is lit",
+)
+.when(Condition::Lights(LightFact::Extended));
+
 impl Technique for PenumbraWedgesRestructured {
     fn name(&self) -> &'static str {
         "penumbra-wedges-restructured"
@@ -149,7 +172,14 @@ impl Technique for PenumbraWedgesRestructured {
 
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
-            &[METHOD.info, PASSES.info, CULLING.info, TILE.info, AXES.info],
+            &[
+                METHOD.info,
+                PASSES.info,
+                CULLING.info,
+                TILE.info,
+                AXES.info,
+                LENGTH.info
+            ],
             PenumbraSettings::PARAMS,
             FrameSettings::PARAMS
         )
@@ -180,19 +210,40 @@ impl Technique for PenumbraWedgesRestructured {
     }
 }
 
-/// A frame, and the wedge shaders in it.
+/// A frame, and what its draws do of wedges.
 pub(crate) struct Built {
     pub(crate) frame: Frame,
     /// In the order of passes and draws.
     pub(crate) wedge_draws: Vec<WedgeDraw>,
 }
 
-/// A draw that runs a wedge shader.
+/// A draw of a wedge, or of a piece of the umbra's boundary.
 #[derive(Clone, Debug)]
 pub(crate) struct WedgeDraw {
     /// Index of the pass in the command list, and of the draw in the pass.
     pub(crate) at: [usize; 2],
-    pub(crate) shader: WedgeInside,
+    pub(crate) model: WedgeModel,
+}
+
+/// What a draw adds to the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Adds {
+    /// 255 for each front plane, or a stencil count.
+    Umbra,
+    /// The intensity at surfaces inside the wedge.
+    Penumbra,
+    /// Both, for front planes that a single pass draws once.
+    Both,
+}
+
+/// A wedge's draw as hardware with tiles of any size would cull it.
+#[derive(Clone, Debug)]
+pub(crate) struct WedgeModel {
+    pub(crate) wedge: WedgePlanes,
+    pub(crate) adds: Adds,
+    /// Umbra boundaries are counted beyond the surface instead of before it.
+    pub(crate) depth_fail: bool,
+    pub(crate) tiles: TileTest,
 }
 
 /// The frame and what the model of tile traffic needs of it.
@@ -204,19 +255,26 @@ pub(crate) fn build(
     let choices = Choices::read(params, size)?;
     let casters = casters::examine(scene, choices.penumbra.open_casters)?;
     let mut frame = ShadowedFrame::new(scene, size, &choices.penumbra.frame)?.with_ambient();
-    let mut inputs = vec![frame.targets.depth_texture()];
-    if let Some((pass, bounds)) =
+    let (pass, copy) = depth_copy::depth_copy(&frame.targets, size, &mut frame.recording)?;
+    frame.push(pass);
+    let (mut inputs, mut bounds) = (vec![copy], Vec::new());
+    let mut atlas = None;
+    if let Some((pass, found)) =
         list::tile_depths(&choices, &frame.targets, size, &mut frame.recording)?
     {
         frame.push(pass);
-        inputs.extend(bounds);
+        bounds = found;
+        let classes = Atlas::create(size, choices.tiles.shift, &mut frame.recording)?;
+        inputs.push(classes.texture);
+        atlas = Some(classes);
     }
     let draws = InsideDraws {
         size,
         casters: &casters,
         screen: Screen::new(&frame.draws.view, size),
         inputs,
-        umbra_stencil: list::umbra_stencil(&choices, size, &mut frame.recording)?,
+        bounds,
+        atlas,
         choices,
     };
     let buffer = penumbra::light_intensity(size, &mut frame.recording)?;
@@ -249,6 +307,8 @@ struct Choices {
     three: bool,
     tiles: TileTest,
     axes: Axes,
+    /// Where shadows end.
+    length: Option<f64>,
     penumbra: PenumbraSettings,
 }
 
@@ -277,6 +337,7 @@ impl Choices {
                 range: axes != SeparatingAxis::Faces,
                 edges: axes == SeparatingAxis::Full,
             },
+            length: params.get(&LENGTH)?,
             penumbra: PenumbraSettings::read(params)?,
         })
     }
@@ -288,7 +349,9 @@ struct InsideDraws<'a> {
     casters: &'a [Examined<'a>],
     screen: Screen,
     choices: Choices,
-    /// Depth, zmax, zmin, as far as there are.
+    /// The copy of depth, and the classes of tiles if there are.
     inputs: Vec<TextureId>,
-    umbra_stencil: Option<TextureId>,
+    /// zmax and zmin of tiles, as far as there are.
+    bounds: Vec<TextureId>,
+    atlas: Option<Atlas>,
 }

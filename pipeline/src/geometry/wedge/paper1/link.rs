@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{LinkedWedge, SideDirections};
+use super::{LinkedWedge, SideDirections, TouchedLight};
 use crate::geometry::wedge::Plane;
 
 /// Most extra wedges at one vertex (paper I, figure 7).
@@ -60,6 +60,8 @@ struct Part {
     outer: DVec3,
     front: Plane,
     back: Plane,
+    /// Points of the two planes at the light.
+    touched: [DVec3; 2],
 }
 
 /// The wedges of one closed silhouette loop of points, directed as silhouettes
@@ -73,16 +75,28 @@ pub fn link(
     settings: &LinkedSettings,
     statistics: &mut LinkedStatistics,
 ) -> Vec<LinkedWedge> {
+    let light = TouchedLight::sphere(centre, radius);
+    link_under(points, &light, settings, statistics)
+}
+
+/// The same for a light that front and back planes touch.
+pub fn link_under(
+    points: &[DVec3],
+    light: &TouchedLight,
+    settings: &LinkedSettings,
+    statistics: &mut LinkedStatistics,
+) -> Vec<LinkedWedge> {
+    let centre = light.centre;
     statistics.edges += points.len() as u64;
     let points = collapse(points, centre, settings, statistics);
-    let parts = parts(&points, centre, radius, settings, statistics);
+    let parts = parts(&points, light, settings, statistics);
     if parts.len() < 2 {
         statistics.dropped_loops += 1;
         return Vec::new();
     }
     let n = parts.len();
     let joints: Vec<Joint> = (0..n)
-        .map(|k| Joint::new(&parts[k], &parts[(k + 1) % n], centre, radius))
+        .map(|k| Joint::new(&parts[k], &parts[(k + 1) % n], centre))
         .collect();
     let mut wedges = Vec::with_capacity(n);
     for (k, part) in parts.iter().enumerate() {
@@ -128,15 +142,14 @@ fn collapse(
 
 fn parts(
     points: &[DVec3],
-    centre: DVec3,
-    radius: f64,
+    light: &TouchedLight,
     settings: &LinkedSettings,
     statistics: &mut LinkedStatistics,
 ) -> Vec<Part> {
     let n = points.len();
     let mut edges = Vec::new();
     for k in 0..n {
-        match Part::of_edge([points[k], points[(k + 1) % n]], centre, radius) {
+        match Part::of_edge([points[k], points[(k + 1) % n]], light) {
             Some(part) => edges.push(part),
             None => statistics.aimed_at_centre += 1,
         }
@@ -147,7 +160,7 @@ fn parts(
     let mut out = Vec::new();
     let count = edges.len();
     let turns: Vec<Vec<Part>> = (0..count)
-        .map(|k| turn(&edges[k], &edges[(k + 1) % count], centre, radius))
+        .map(|k| turn(&edges[k], &edges[(k + 1) % count], light))
         .collect();
     for (edge, turn) in edges.into_iter().zip(turns) {
         statistics.extra_wedges += turn.len() as u64;
@@ -158,7 +171,8 @@ fn parts(
 }
 
 /// The extra wedges between two edges that meet at an acute convex vertex.
-fn turn(before: &Part, after: &Part, centre: DVec3, radius: f64) -> Vec<Part> {
+fn turn(before: &Part, after: &Part, light: &TouchedLight) -> Vec<Part> {
+    let centre = light.centre;
     let vertex = before.edge[1];
     if vertex != after.edge[0] {
         return Vec::new(); // an edge between them was left out
@@ -183,33 +197,28 @@ fn turn(before: &Part, after: &Part, centre: DVec3, radius: f64) -> Vec<Part> {
         (before.outer * libm::cos(t) + across * libm::sin(t)).normalize()
     };
     (1..=extra)
-        .filter_map(|k| Part::at_vertex(vertex, outer(k), centre, radius))
+        .filter_map(|k| Part::at_vertex(vertex, outer(k), light))
         .collect()
 }
 
 impl Part {
-    fn of_edge([a, b]: [DVec3; 2], centre: DVec3, radius: f64) -> Option<Self> {
+    fn of_edge([a, b]: [DVec3; 2], light: &TouchedLight) -> Option<Self> {
         let along = (b - a).normalize();
-        let outer = along.cross(centre - a).try_normalize()?;
-        Self::new([a, b], along, outer, centre, radius)
+        let outer = along.cross(light.centre - a).try_normalize()?;
+        Self::new([a, b], along, outer, light)
     }
 
-    fn at_vertex(vertex: DVec3, outer: DVec3, centre: DVec3, radius: f64) -> Option<Self> {
+    fn at_vertex(vertex: DVec3, outer: DVec3, light: &TouchedLight) -> Option<Self> {
         // As for edges: along x (centre - vertex) points along outer.
-        let along = (centre - vertex).cross(outer).try_normalize()?;
-        Self::new([vertex; 2], along, outer, centre, radius)
+        let along = (light.centre - vertex).cross(outer).try_normalize()?;
+        Self::new([vertex; 2], along, outer, light)
     }
 
-    fn new(
-        edge: [DVec3; 2],
-        along: DVec3,
-        outer: DVec3,
-        centre: DVec3,
-        radius: f64,
-    ) -> Option<Self> {
+    fn new(edge: [DVec3; 2], along: DVec3, outer: DVec3, light: &TouchedLight) -> Option<Self> {
         let away = |light: DVec3| edge[0] - light;
-        let [f, b] = [-radius, radius].map(|r| centre + outer * r);
+        let [f, b] = light.touched(edge[0], along, outer);
         Some(Self {
+            touched: [f, b],
             edge,
             along,
             outer,
@@ -251,14 +260,14 @@ struct Joint {
 }
 
 impl Joint {
-    fn new(before: &Part, after: &Part, centre: DVec3, radius: f64) -> Self {
+    fn new(before: &Part, after: &Part, centre: DVec3) -> Self {
         let vertex = after.edge[0];
-        let ray = |p: &Plane, q: &Plane, side: f64| {
-            let beside = centre + 0.5 * (before.outer + after.outer) * (side * radius);
+        let ray = |p: &Plane, q: &Plane, side: usize| {
+            let beside = 0.5 * (before.touched[side] + after.touched[side]);
             common_ray(p.normal, q.normal, vertex - beside, vertex - centre)
         };
-        let front_ray = ray(&before.front, &after.front, -1.0);
-        let back_ray = ray(&before.back, &after.back, 1.0);
+        let front_ray = ray(&before.front, &after.front, 0);
+        let back_ray = ray(&before.back, &after.back, 1);
         let side = Plane::spanned(vertex, front_ray, back_ray);
         let mean = 0.5 * (before.outer + after.outer);
         let normal = side.map_or(DVec3::ZERO, |s| s.normal);

@@ -20,13 +20,21 @@
 //!   quad ([`LinkedWedge::front_quad`]), since neighbours' quads meet along the
 //!   whole shared ray.
 
+mod end;
 mod intensity;
 mod link;
+mod parts;
 mod shape;
+mod touch;
 
+pub use end::End;
 pub use intensity::{SideDirections, smoothed};
-pub use link::{LinkedSettings, LinkedStatistics, MOST_EXTRA, link};
+pub use link::{LinkedSettings, LinkedStatistics, MOST_EXTRA, link, link_under};
+pub use parts::{Cut, WedgeParts};
 pub use shape::Overlap;
+pub use touch::TouchedLight;
+
+pub(crate) use parts::between_rays;
 
 use glam::DVec3;
 

@@ -8,6 +8,7 @@
 //! image need no test, since only tiles under the wedge are drawn; depth does, by
 //! the wedge's range of it: the paper's quick rejection test.
 
+use glam::DVec4;
 use gnomon_shaders::penumbra::plane::ScreenPlane;
 
 use super::screen::Screen;
@@ -40,10 +41,10 @@ pub(crate) fn of_edges(
 /// The wedge's range of depth as planes, each with its margin.
 pub(crate) fn of_depth(
     view: &View,
-    wedge: &LinkedWedge,
+    vertices: impl Iterator<Item = DVec4>,
     size: [u32; 2],
 ) -> Vec<(ScreenPlane, f32)> {
-    with_margins(depth_range(view, wedge).into_iter().flatten(), size)
+    with_margins(depth_range(view, vertices).into_iter().flatten(), size)
 }
 
 fn with_margins(
@@ -66,12 +67,12 @@ fn cancelled(p: &[f64; 4], q: &[f64; 4], k: usize) -> Option<[f64; 4]> {
     Some(sum)
 }
 
-/// Bounds of 1 - depth over the wedge, as planes; none where it passes the eye.
-fn depth_range(view: &View, wedge: &LinkedWedge) -> [Option<[f64; 4]>; 2] {
+/// Bounds of 1 - depth over a wedge's vertices, as planes; none where it passes the eye.
+fn depth_range(view: &View, vertices: impl Iterator<Item = DVec4>) -> [Option<[f64; 4]>; 2] {
     let row = |r: usize| view.clip_from_world.0[r].map(f64::from);
     let (z, w) = (row(2), row(3));
     let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for v in wedge.mesh().vertices {
+    for v in vertices {
         let p = if v.w == 0.0 {
             v.truncate()
         } else {

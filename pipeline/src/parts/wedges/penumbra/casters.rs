@@ -16,12 +16,13 @@ use crate::world::light::HardLight;
 use crate::world::mesh::Mesh;
 
 impl Examined<'_> {
-    /// The wedges and the front volume for a spherical light; `met` counts what
-    /// was special.
+    /// The wedges and the front volume for a spherical light, to `length` behind
+    /// each silhouette loop or to infinity; `met` counts what was special.
     pub(crate) fn soft_volume(
         &self,
         sphere: &LightSphere,
         settings: &LinkedSettings,
+        length: Option<f64>,
         met: &mut LinkedReport,
     ) -> SoftVolume {
         let mesh = &self.object.mesh;
@@ -37,8 +38,10 @@ impl Examined<'_> {
             ),
         };
         let loops = self.loops(mesh, &orientation, met);
-        let volume = SoftVolume::new(&loops, cap, sphere, settings, met);
-        if counting == Counting::AllTriangles && self.caster.report().is_closed() {
+        let encloses = counting == Counting::AllTriangles && self.caster.report().is_closed();
+        let length = length.filter(|_| !encloses);
+        let volume = SoftVolume::new(&loops, cap, sphere, settings, length, met);
+        if encloses {
             return volume.enclosing(mesh, sphere.centre);
         }
         volume

@@ -48,7 +48,7 @@ impl Method {
 
     /// Passes where a boundary lies on the side that counts; ties are beyond, so
     /// that a cap on the surface counts as beyond it.
-    fn depth_test(self) -> DepthStencilState {
+    pub(crate) fn depth_test(self) -> DepthStencilState {
         let compare = match self {
             Self::DepthPass => CompareFunction::Less,
             Self::DepthFail => CompareFunction::GreaterEqual,

@@ -2,8 +2,10 @@
 
 pub(crate) mod axes;
 pub(crate) mod casters;
+pub(crate) mod depth_copy;
 pub(crate) mod hard;
 pub(crate) mod light;
+pub(crate) mod reach;
 pub(crate) mod report;
 pub(crate) mod screen;
 pub(crate) mod shape;
@@ -25,7 +27,7 @@ use crate::technique::{
     TechniqueError, WedgeKind,
 };
 use crate::world::scene::Scene;
-use light::LightSphere;
+use light::{LIGHT_AS, LightAs, LightSphere};
 use report::LinkedReport;
 
 impl Choice for Interpolation {
@@ -52,18 +54,24 @@ pub(crate) const EXTRA_WEDGES: Param<bool> = Param::switch(
 pub(crate) struct PenumbraSettings {
     pub(crate) interpolation: Interpolation,
     pub(crate) extra_wedges: bool,
+    pub(crate) light_as: LightAs,
     pub(crate) open_casters: CasterPolicy,
     pub(crate) frame: FrameSettings,
 }
 
 impl PenumbraSettings {
-    pub(crate) const PARAMS: &'static [ParamInfo] =
-        &[INTERPOLATION.info, EXTRA_WEDGES.info, OPEN_CASTERS.info];
+    pub(crate) const PARAMS: &'static [ParamInfo] = &[
+        INTERPOLATION.info,
+        EXTRA_WEDGES.info,
+        LIGHT_AS.info,
+        OPEN_CASTERS.info,
+    ];
 
     pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
         Ok(Self {
             interpolation: params.get(&INTERPOLATION)?,
             extra_wedges: params.get(&EXTRA_WEDGES)?,
+            light_as: params.get(&LIGHT_AS)?,
             open_casters: params.get(&OPEN_CASTERS)?,
             frame: FrameSettings::read(params)?,
         })
@@ -83,12 +91,12 @@ pub(crate) fn scene_wedges(scene: &Scene, params: &Params) -> Result<SceneWedges
     let casters = examine(scene, settings.open_casters)?;
     let mut meshes: Vec<WedgeMesh> = Vec::new();
     for light in settings.frame.lights(scene)? {
-        let Some(sphere) = LightSphere::of(&scene.lights[light]) else {
+        let Some(sphere) = LightSphere::of(&scene.lights[light], settings.light_as) else {
             continue;
         };
         for caster in &casters {
             let report = &mut LinkedReport::default();
-            let volume = caster.soft_volume(&sphere, &settings.linked(), report);
+            let volume = caster.soft_volume(&sphere, &settings.linked(), None, report);
             meshes.extend(volume.wedges.iter().map(LinkedWedge::mesh));
         }
     }

@@ -14,6 +14,8 @@ pub(crate) struct LinkedReport {
     pub(crate) unbalanced: u64,
     /// Pieces of umbra boundary without wedge, which keep the volume closed.
     pub(crate) gaps: u64,
+    /// Volumes that go to infinity, since not all of them comes to the end asked for.
+    pub(crate) endless: u64,
 }
 
 /// Loops from which an 8-bit count of nested umbrae could pass 127.
@@ -70,6 +72,12 @@ impl LinkedReport {
                 "umbra-gaps",
                 self.gaps,
                 "pieces of the umbra's boundary have no wedge",
+            ),
+            (
+                "endless-volumes",
+                self.endless,
+                "volumes have sides that do not come to the plane of wedge-length, and go to \
+                 infinity",
             ),
         ];
         let warning = |(code, count, what): (&'static str, u64, &str)| Warning {

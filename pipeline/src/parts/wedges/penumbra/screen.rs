@@ -5,9 +5,10 @@ use glam::{DMat4, DVec3};
 use gnomon_shaders::penumbra::crossing::SideIntensity;
 use gnomon_shaders::penumbra::intensity::{IntensityRates, Interpolation};
 use gnomon_shaders::penumbra::plane::ScreenPlane;
+use gnomon_shaders::penumbra::tiles::WedgePlanes;
 
 use crate::geometry::wedge::Plane;
-use crate::geometry::wedge::paper1::LinkedWedge;
+use crate::geometry::wedge::paper1::{End, LinkedWedge};
 use crate::parts::passes::View;
 
 /// Turns planes into [`ScreenPlane`]s for one view and image size.
@@ -51,6 +52,27 @@ impl Screen {
     /// Front, back and side planes of a wedge.
     pub(crate) fn wedge(&self, view: &View, wedge: &LinkedWedge) -> [ScreenPlane; 4] {
         wedge.planes().map(|p| self.plane(view, &p))
+    }
+
+    /// The planes of a wedge as pixels and tiles are tested against them.
+    pub(crate) fn wedge_planes(&self, view: &View, wedge: &LinkedWedge, end: &End) -> WedgePlanes {
+        let planes = self.wedge(view, wedge);
+        WedgePlanes {
+            planes,
+            front_margin: self.depth_margin(&planes[0]),
+            bottom: end.0.map(|plane| self.plane(view, &plane)),
+        }
+    }
+
+    /// By how much, as a value of the plane, the depth of its rasterised faces may be off:
+    /// vertices are snapped to 1/256 pixel, depth and coefficients are rounded.
+    pub(crate) fn depth_margin(&self, plane: &ScreenPlane) -> f32 {
+        const SNAPPING: f64 = 1.0 / 256.0;
+        const ROUNDING: f64 = 1e-5;
+        let [a, b, c, d] = plane.0.map(|v| f64::from(v).abs());
+        let largest = [a * self.size[0], b * self.size[1], c, d];
+        let largest = largest.into_iter().fold(0.0, f64::max);
+        ((a + b) * SNAPPING + largest * ROUNDING) as f32
     }
 
     /// For intensities in the side planes of a wedge. Both wedges at a joint get
@@ -97,6 +119,15 @@ pub(crate) fn rates(wedge: &LinkedWedge, interpolation: Interpolation) -> Intens
     IntensityRates {
         back_over_front: [ratio(0), ratio(1)],
         first_over_second: over(first, second),
+        interpolation,
+    }
+}
+
+/// Where there is no wedge, and no intensity.
+pub(crate) fn no_rates(interpolation: Interpolation) -> IntensityRates {
+    IntensityRates {
+        back_over_front: [1.0; 2],
+        first_over_second: 1.0,
         interpolation,
     }
 }

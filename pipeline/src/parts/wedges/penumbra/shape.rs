@@ -6,7 +6,7 @@ use glam::DVec4;
 use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, TextureBinding, VertexBuffer};
 
 use super::volume::Triangle;
-use crate::geometry::wedge::paper1::{LinkedWedge, Overlap};
+use crate::geometry::wedge::paper1::WedgeParts;
 use crate::parts::passes::{self, View};
 use crate::parts::visibility::homogeneous;
 
@@ -33,52 +33,27 @@ impl Faces {
 
 /// How a wedge is drawn.
 pub(crate) struct WedgeShape {
-    /// The umbra's boundary.
+    /// The wedge's front face.
     pub(crate) front: Faces,
-    /// All other faces; `None` where the boundary is more than the wedge's front
-    /// face, because the side planes meet in the front plane.
-    pub(crate) others: Option<Faces>,
-    /// All faces of the wedge.
-    pub(crate) all: Faces,
+    /// Boundary of the umbra that is none of the wedge, where its side planes meet in
+    /// the front plane.
+    pub(crate) beyond: Option<Faces>,
+    /// All other faces; with the front face they close the wedge.
+    pub(crate) others: Faces,
+    /// Everything of the wedge, to find where it may be seen.
+    pub(crate) whole: Vec<Triangle>,
 }
 
 impl WedgeShape {
-    pub(crate) fn new(view: &View, wedge: &LinkedWedge) -> Self {
-        let mesh = wedge.mesh();
-        let vertices = Arc::new(homogeneous(view, &mesh.vertices));
-        let faces = |triangles: &[[u32; 3]]| Faces {
-            vertices: vertices.clone(),
-            indices: passes::index_buffer(triangles),
-        };
-        let corners = front_corners(wedge);
-        let in_front = |t: &&[u32; 3]| {
-            t.iter()
-                .all(|&i| corners.contains(&mesh.vertices[i as usize]))
-        };
-        let (front, others): (Vec<&[u32; 3]>, Vec<_>) = mesh.triangles.iter().partition(in_front);
-        let expected = if wedge.edge[0] == wedge.edge[1] { 1 } else { 2 };
-        let all = faces(&mesh.triangles);
-        let cut = matches!(wedge.overlap(), Some(Overlap::Front(_) | Overlap::Both(_)));
-        if cut || front.len() != expected {
-            return Self {
-                front: triangles(view, &wedge.front_quad()),
-                others: None,
-                all,
-            };
-        }
-        let owned = |list: Vec<&[u32; 3]>| list.into_iter().copied().collect::<Vec<_>>();
+    pub(crate) fn new(view: &View, parts: WedgeParts) -> Self {
+        let beyond = &parts.beyond;
         Self {
-            front: faces(&owned(front)),
-            others: Some(faces(&owned(others))),
-            all,
+            front: triangles(view, &parts.front),
+            beyond: (!beyond.is_empty()).then(|| triangles(view, beyond)),
+            others: triangles(view, &parts.others),
+            whole: [parts.front, parts.others].concat(),
         }
     }
-}
-
-fn front_corners(wedge: &LinkedWedge) -> [DVec4; 4] {
-    let [a, b] = wedge.edge.map(|p| p.extend(1.0));
-    let [r, s] = wedge.front_rays.map(|d| d.extend(0.0));
-    [a, b, r, s]
 }
 
 /// Triangles with corners of their own.

@@ -57,7 +57,8 @@ pub(super) fn inside_penumbrae(lab: &mut Lab) -> Result<Finding, ReproduceError>
 }
 
 pub(super) fn sixteen_lights(lab: &mut Lab) -> Result<Finding, ReproduceError> {
-    let scene = lab.scene("cylinder")?;
+    // Nothing else is off there.
+    let scene = lab.scene("parallel-plates")?;
     let image = LightImage::windows();
     let size = lab.size();
     let (kind, of) = (ReferenceKind::Exact, (0, Some(&image)));
@@ -85,7 +86,7 @@ pub(super) fn sixteen_lights(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         measures.push(Measure::beside(what, "-", *error, Unit::Number));
     }
     Ok(Finding {
-        scene: lab.describe("cylinder under sixteen lights in one image"),
+        scene: lab.describe("parallel-plates under sixteen lights in one image"),
         counted: "RMSE of float visibility against the exact oracle with the same image, nearest \
             look-ups as in the paper"
             .to_owned(),

@@ -172,7 +172,15 @@ fn half_way_between_two_images_lies_between_them() {
     let names = [folder.quarter("a.png", 8, 0), folder.quarter("b.png", 8, 3)];
     let video = params(&[&format!("light-image={}", names.join(","))]);
     let at = |position: f64| drawn_with(&scene, &video.with_later_image(position));
-    let [from, middle, to] = [0.0, 0.5, 1.0].map(at);
+    let [from, first, middle, to] = [0.0, 0.25, 0.5, 1.0].map(at);
+    // A quarter of the way is nearer to the first image.
+    let nearer = |d: &Rendered| {
+        let pairs = d.visibility.iter().zip(&from.visibility);
+        let off = pairs.map(|(a, b)| f64::from((a - b).abs()));
+        off.filter(|d| !d.is_nan()).sum::<f64>()
+    };
+    let (quarter, half) = (nearer(&first), nearer(&middle));
+    assert!((quarter / half - 0.5).abs() < 0.01, "{quarter} {half}");
     let (mut between, mut apart) = (0, 0);
     for k in 0..middle.visibility.len() {
         let [a, v, b] = [&from, &middle, &to].map(|d| d.visibility[k]);

@@ -94,7 +94,7 @@ impl Recorded {
             self.shape.passes.get(pass?)?.draws.get(draw?)
         };
         let rows = traffic.rows.iter();
-        let rows = rows.filter(|r| draw(r.pass, r.draw.map(|d| d as usize)).is_some_and(&wanted));
+        let rows = rows.filter(|r| draw(r.pass, r.draw).is_some_and(&wanted));
         for row in rows.filter(|r| self.is_for(r.pass, roles)) {
             let of = |client| {
                 let levels = row.client(client);

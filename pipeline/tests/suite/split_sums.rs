@@ -92,7 +92,9 @@ impl Buffers {
 fn seen_after(values: [&[u32]; 2], hard: i32) -> (f32, u64) {
     let mut buffers = Buffers::new();
     for (to, values) in values.into_iter().enumerate() {
-        let shares = values.iter().map(|v| vec![*v as f32 / FULL; COUNT]);
+        // A little less, which is rounded to the nearest.
+        let share = |v: &u32| (*v as f32 - 0.3).max(0.0) / FULL;
+        let shares = values.iter().map(|v| vec![share(v); COUNT]);
         buffers.add(to, &shares.collect::<Vec<_>>());
     }
     buffers.count(hard);

@@ -184,15 +184,13 @@ const LENGTH: &str = "wedge-length=3.5";
 
 fn zmax_only(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let scene = lab.scene("columns")?;
-    let [none, zmax, both, endless] = lab.race(
-        &scene,
-        [
-            (TECHNIQUE, &["passes=three", LENGTH, "culling=none"]),
-            (TECHNIQUE, &["passes=three", LENGTH, "culling=zmax"]),
-            (TECHNIQUE, &["passes=three", LENGTH, "culling=zminmax"]),
-            (TECHNIQUE, &["passes=three", "culling=zminmax"]),
-        ],
-    )?;
+    let runs: [(&str, &[&str]); 4] = [
+        (TECHNIQUE, &["passes=three", LENGTH, "culling=none"]),
+        (TECHNIQUE, &["passes=three", LENGTH, "culling=zmax"]),
+        (TECHNIQUE, &["passes=three", LENGTH, "culling=zminmax"]),
+        (TECHNIQUE, &["passes=three", "culling=zminmax"]),
+    ];
+    let [none, zmax, both, endless] = lab.race(&scene, runs)?;
     let set = |culling| ["passes=three", LENGTH, culling];
     let traffic = |culling| Ok::<_, ReproduceError>(modelled(lab, &set(culling))?.traffic);
     let (with_zmax, with_both) = (traffic("culling=zmax")?, traffic("culling=zminmax")?);

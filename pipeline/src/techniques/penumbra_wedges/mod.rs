@@ -58,6 +58,7 @@ mod levels;
 
 use gnomon_raster::{Draw, LoadOp, RenderPass, TextureId};
 use gnomon_shaders::penumbra::FULL;
+use gnomon_shaders::penumbra::intensity::Interpolation;
 
 use crate::parts::casters::{self, Examined};
 use crate::parts::frame_settings::FrameSettings;
@@ -111,7 +112,7 @@ const SIDE_PLANES: Param<SidePlanes> = Param::choice(
     "intensity where rays pass side planes: left out since neighbours cancel, evaluated, or \
      by the equation for the inside at every plane",
 )
-.when(Condition::Lights(LightFact::Extended));
+.when(CONTINUOUS);
 
 choices! {
     /// What is culled.
@@ -130,8 +131,16 @@ const CULLING: Param<Culling> = Param::choice(
 )
 .when(Condition::All(&[
     Condition::Not("side-planes", &["evaluate", "naive"]),
-    Condition::Lights(LightFact::Extended),
+    CONTINUOUS,
 ]));
+
+/// With wedges, not quads.
+const CONTINUOUS: Condition = Condition::All(&[
+    Condition::Is("levels", &["continuous"]),
+    Condition::Lights(LightFact::Extended),
+]);
+
+const INTERPOLATION: Param<Interpolation> = penumbra::INTERPOLATION.when(CONTINUOUS);
 
 const LEVELS: Param<Option<u32>> = Param::<Option<u32>>::whole_or(
     &["continuous"],
@@ -187,8 +196,14 @@ impl Technique for PenumbraWedges {
 
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
-            &[START.info, SIDE_PLANES.info, CULLING.info, LEVELS.info],
-            PenumbraSettings::PARAMS,
+            &[
+                START.info,
+                SIDE_PLANES.info,
+                CULLING.info,
+                LEVELS.info,
+                INTERPOLATION.info
+            ],
+            PenumbraSettings::OTHER_PARAMS,
             FrameSettings::PARAMS
         )
     }

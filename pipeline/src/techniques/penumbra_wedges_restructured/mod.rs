@@ -180,7 +180,8 @@ impl Technique for PenumbraWedgesRestructured {
                 AXES.info,
                 LENGTH.info
             ],
-            PenumbraSettings::PARAMS,
+            &[penumbra::INTERPOLATION.info],
+            PenumbraSettings::OTHER_PARAMS,
             FrameSettings::PARAMS
         )
     }

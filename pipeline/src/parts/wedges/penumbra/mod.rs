@@ -60,12 +60,9 @@ pub(crate) struct PenumbraSettings {
 }
 
 impl PenumbraSettings {
-    pub(crate) const PARAMS: &'static [ParamInfo] = &[
-        INTERPOLATION.info,
-        EXTRA_WEDGES.info,
-        LIGHT_AS.info,
-        OPEN_CASTERS.info,
-    ];
+    /// Those besides [`INTERPOLATION`], which a technique may have conditions for.
+    pub(crate) const OTHER_PARAMS: &'static [ParamInfo] =
+        &[EXTRA_WEDGES.info, LIGHT_AS.info, OPEN_CASTERS.info];
 
     pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
         Ok(Self {

@@ -35,6 +35,7 @@ mod paper2_rest;
 mod paper2_tiles;
 mod paper2_time;
 mod paper3;
+mod paper3_images;
 mod paper3_recorded;
 mod paper3_scaling;
 mod paper4;

@@ -3,9 +3,10 @@
 
 use std::time::Instant;
 
+use super::paper3_images as images;
 use super::paper3_scaling as scaling;
 use super::tally::{bytes_of, counters, draws, ratio};
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::{DrawRole, PassRole};
@@ -22,14 +23,16 @@ pub(super) const CLAIMS: &[Claim] = &[
         "1024 samples move 585 MB of depth, stencil and visibility a frame, 256 samples \
          146 MB, soft shadow volumes 6.0 MB.",
         bandwidth,
-    ),
+    )
+    .read_from(&[Lines::one(1463)]),
     Claim::new(
         "paper3-texture-size",
         "paper III, §3.2.3 and §3.3",
         Verdict::Arithmetic,
         "With n = 32 the coverage texture is 1024x1024: 1 MB, and 3 MB in colours.",
         texture_size,
-    ),
+    )
+    .read_from(&[Lines::one(1383), Lines::one(1387), Lines::one(1397)]),
     Claim::new(
         "paper3-passes",
         "paper III, §4",
@@ -37,21 +40,24 @@ pub(super) const CLAIMS: &[Claim] = &[
         "Without blending of floats each wedge takes four passes: umbra, penumbra, and a copy \
          back after each.",
         passes,
-    ),
+    )
+    .read_from(&[Lines::to(1403, 1405)]),
     Claim::new(
         "paper3-filtering",
         "paper III, §3.2.3",
         Verdict::Counters,
         "Filtering the coverage texture is not needed in normal scenes.",
         filtering,
-    ),
+    )
+    .read_from(&[Lines::to(1379, 1383)]),
     Claim::new(
         "paper3-table-build",
         "paper III, §3.2.3",
         Verdict::Times,
         "Building a coverage texture takes less than three minutes (Pentium 4 at 1.7 GHz).",
         table_build,
-    ),
+    )
+    .read_from(&[Lines::one(1383)]),
     Claim::new(
         "paper3-resolution",
         "paper III, §5",
@@ -59,27 +65,49 @@ pub(super) const CLAIMS: &[Claim] = &[
         "Fairy: 3, 0.51 and 0.14 fps at 100x100, 256x256 and 512x512: time grows slower than \
          pixels.",
         scaling::resolution,
-    ),
+    )
+    .read_from(&[Lines::one(1451)]),
     Claim::new(
         "paper3-light-side",
         "paper III, §5",
         Verdict::Counters,
         "Halving the side of a square light more than doubles the frame rate.",
         scaling::light_side,
-    ),
+    )
+    .read_from(&[Lines::one(1461)]),
     Claim::new(
         "paper3-linear",
         "paper III, §5 and §6",
         Verdict::Counters,
         "The cost is linear in silhouette edges, pixels inside wedges, lights and objects.",
         scaling::linear,
-    ),
+    )
+    .read_from(&[Lines::one(1465)]),
     Claim::quoted(
         "paper3-frame-rates",
         "paper III, §5",
         "Software on a Pentium 4: fairy 3, 0.51, 0.14 fps; sixteen lights in one texture 0.8 \
          and 0.4 fps at 256x256 and 512x512.",
-    ),
+    )
+    .read_from(&[Lines::one(1451), Lines::one(1461)]),
+    Claim::new(
+        "paper3-inside-penumbrae",
+        "paper III, §3.1",
+        Verdict::Times,
+        "Most of the time is spent on points inside the penumbra volumes themselves, however \
+         large wedges are.",
+        images::inside_penumbrae,
+    )
+    .read_from(&[Lines::one(1300)]),
+    Claim::new(
+        "paper3-sixteen-lights",
+        "paper III, §5",
+        Verdict::Counters,
+        "Sixteen lights in one texture show sampling artefacts; a coverage texture of higher \
+         resolution solves it.",
+        images::sixteen_lights,
+    )
+    .read_from(&[Lines::one(1424), Lines::one(1432)]),
 ];
 
 /// Depth, stencil and colour of the shadow passes, in bytes: what the paper counted.
@@ -190,12 +218,13 @@ fn table_bytes(lab: &Lab, set: &[&str]) -> Result<u64, ReproduceError> {
 
 fn texture_size(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let white = table_bytes(lab, &["backend=texture4d"])?;
-    let coloured = table_bytes(lab, &["light-image=halves"])?;
+    let bytes = table_bytes(lab, &["light-image=halves", "texture-bits=8"])?;
+    let halves = table_bytes(lab, &["light-image=halves"])?;
     let mib = f64::from(1 << 20);
     Ok(Finding {
         scene: "cylinder; textures that the technique creates".to_owned(),
-        counted: "bytes of the texture `coverage`: 1 B a texel, and 8 B in colours (three half \
-            floats and one unused; the paper has 3 B)"
+        counted: "bytes of the texture `coverage`: 1 B a texel; 4 B in colours of 8 bits, of \
+            which one is not used, and 8 B in half floats"
             .to_owned(),
         measures: vec![
             Measure::new(
@@ -205,15 +234,15 @@ fn texture_size(lab: &mut Lab) -> Result<Finding, ReproduceError> {
                 Unit::Bytes,
             ),
             Measure::new(
-                "three colours, at the paper's 3 B a texel",
-                Theirs::Exactly(3.0 * mib),
-                3.0 * coloured as f64 / 8.0,
+                "three colours of 8 bits, where 24 bits are stored in 32 (its footnote 1)",
+                Theirs::Exactly(4.0 * mib),
+                bytes as f64,
                 Unit::Bytes,
             ),
             Measure::beside(
-                "three colours, as here",
+                "three colours, by default",
                 "3 MB",
-                coloured as f64,
+                halves as f64,
                 Unit::Bytes,
             ),
         ],
@@ -226,38 +255,33 @@ fn passes(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let scene = lab.scene("cylinder")?;
     let done = lab.render(&scene, TECHNIQUE, &["copy-back=on", "wedge=paper3"])?;
     let of = |role: PassRole| {
-        let roles = done.roles.passes().iter();
-        roles.filter(|r| **r == role).count()
+        let all = done.report.passes.iter().zip(done.roles.passes());
+        // Clearing visibility is a pass of its own, without draws.
+        all.filter(|(pass, r)| **r == role && !pass.draws.is_empty())
+            .count() as f64
     };
-    let wedges = draws(&done, DrawRole::CoverageAside);
-    let per_wedge = of(PassRole::Wedges) as f64 / wedges as f64;
+    let wedges = draws(&done, DrawRole::CoverageAside) as f64;
+    let [umbra, penumbra] = [PassRole::HardCount, PassRole::Wedges].map(of);
     Ok(Finding {
         scene: lab.describe("cylinder"),
-        counted: "render passes, wedges one by one into floats without blending (copy-back=on)"
-            .to_owned(),
+        counted: "render passes that draw, into floats without blending (copy-back=on)".to_owned(),
         measures: vec![
             Measure::new(
                 "passes per wedge",
                 Theirs::Exactly(4.0),
-                per_wedge,
+                (umbra + penumbra) / wedges,
                 Unit::Count,
             ),
             Measure::beside(
-                "of these, penumbra and its copy",
+                "of these, umbra and its copy",
                 "2",
-                per_wedge,
+                umbra / wedges,
                 Unit::Count,
             ),
-            Measure::beside(
-                "passes for all umbrae together",
-                "2 per wedge",
-                of(PassRole::HardCount) as f64,
-                Unit::Count,
-            ),
+            Measure::beside("penumbra and its copy", "2", penumbra / wedges, Unit::Count),
         ],
-        reason: "Penumbra and its copy are two passes here as there. The umbra's two are not \
-            there: the emulated GPU counts all hard shadow quads in one blended pass, which \
-            the GeForce FX could not do with floats."
+        reason: "Another number of wedges than of hard shadow quads, where edges touch a light \
+            or its plane."
             .to_owned(),
         charts: Vec::new(),
     })

@@ -4,7 +4,7 @@
 use super::paper3::TECHNIQUE;
 use super::recorded::{Level, Moved, Recorded, uncached};
 use super::tally::ratio;
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use gnomon_pipeline::technique::PassRole;
 
 pub(super) const CLAIMS: &[Claim] = &[Claim::new(
@@ -14,7 +14,8 @@ pub(super) const CLAIMS: &[Claim] = &[Claim::new(
     "1024 samples move 585 MB of depth, stencil and visibility a frame, 256 samples \
      146 MB, soft shadow volumes 6.0 MB: from recordings, without caches and HiZ.",
     bandwidth,
-)];
+)
+.read_from(&[Lines::one(1463)])];
 
 const SHADOWS: [PassRole; 3] = [PassRole::Samples, PassRole::HardCount, PassRole::Wedges];
 

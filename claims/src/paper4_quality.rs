@@ -3,11 +3,11 @@
 use super::equal_error::cost_of_error;
 use super::overlaps::Overlaps;
 use super::paper4::TECHNIQUE;
-use super::tally::{counters, pass_time};
+use super::tally::{counters, invocations, pass_time};
 use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
-use gnomon_pipeline::technique::PassRole;
+use gnomon_pipeline::technique::{DrawRole, PassRole};
 
 /// Scenes, and whether they have a complex model, as the claim asks for.
 const SCENES: [(&str, bool); 4] = [
@@ -33,6 +33,12 @@ pub(super) fn overlap(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         };
         let what = format!("{name}: most wedges at a pixel");
         measures.push(Measure::new(what, theirs, most, Unit::Count));
+        let done = lab.render(&scene, TECHNIQUE, &["wedge=paper4"])?;
+        let lost = counters(&done, &[PassRole::Wedges]).events.blend_saturated;
+        let lost = lost.iter().sum::<u64>() as f64;
+        // The paper's five bits hold what its models need.
+        let what = format!("{name}: channels that saturated");
+        measures.push(Measure::new(what, Theirs::AtMost(0.0), lost, Unit::Count));
         measures.push(Measure::beside(
             format!("{name}: pixels beyond 16, of those covered"),
             "some",
@@ -57,7 +63,10 @@ pub(super) fn overlap(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             buffer has at least half of them where they are most"
             .to_owned(),
         measures,
-        reason: "The model has too few edges behind one another at this size.".to_owned(),
+        reason: "creature has too few edges behind one another at this size to pass 16. peer-c \
+            has so many that channels saturate: five bits are not enough there, and the \
+            technique warns of it (coverage-saturated)."
+            .to_owned(),
         charts: vec![Chart {
             name: "paper4-overlap".to_owned(),
             title: "Pixels by number of wedges that cover their surface".to_owned(),
@@ -185,6 +194,62 @@ pub(super) fn splits(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             error of samples is small and everywhere."
             .to_owned(),
         charts,
+    })
+}
+
+/// Invocations of the wedge shader and time of lights in n parts, over those of one.
+pub(super) fn sub_lights(lab: &mut Lab) -> Result<Finding, ReproduceError> {
+    let mut measures = Vec::new();
+    for name in ["columns", "creature"] {
+        let scene = lab.scene(name)?;
+        let shaded = |k: u32| {
+            let done = lab.render(&scene, TECHNIQUE, &[&*format!("split={k}")])?;
+            Ok::<_, ReproduceError>(invocations(&done, DrawRole::Coverage) as f64)
+        };
+        let one = shaded(1)?;
+        for k in [2u32, 3] {
+            measures.push(Measure::new(
+                format!("{name}: shaded pixels of {k}x{k} over one, per part"),
+                Theirs::AtMost(1.0),
+                shaded(k)? / one / f64::from(k * k),
+                Unit::Ratio,
+            ));
+        }
+    }
+    Ok(Finding {
+        scene: lab.describe("columns and creature, square light of side 1"),
+        counted: "invocations of the wedge shader".to_owned(),
+        measures,
+        reason: "Wedges of a part are as thin as it is narrow.".to_owned(),
+        charts: Vec::new(),
+    })
+}
+
+/// Frames with wedges round spheres over those with wedges round rectangles.
+pub(super) fn tight_frames(lab: &mut Lab) -> Result<Finding, ReproduceError> {
+    let scene = lab.scene("creature")?;
+    let runs: [(&str, &[&str]); 2] = [
+        (TECHNIQUE, &["wedge=paper3"]),
+        (TECHNIQUE, &["wedge=paper4"]),
+    ];
+    let done = lab.race(&scene, runs)?;
+    let [wide, tight] = done.each_ref().map(|d| pass_time(d, &SHADOW));
+    Ok(Finding {
+        scene: lab.describe("creature, for the model of figure 9"),
+        counted: "time of frames, and of their shadow passes alone".to_owned(),
+        measures: vec![
+            Measure::new(
+                "frames",
+                Theirs::ratio(1.5, 1.5),
+                done[0].frame_ms / done[1].frame_ms,
+                Unit::Ratio,
+            ),
+            Measure::beside("shadow passes", "-", wide / tight, Unit::Ratio),
+        ],
+        reason: "Part of a frame is no wedge, and a wedge's cost here is as much in the blocks \
+            that are tested as in the pixels that are shaded."
+            .to_owned(),
+        charts: Vec::new(),
     })
 }
 

@@ -1,64 +1,112 @@
-//! Operations of the wedge shaders, counted by hand in `gnomon-shaders`.
+//! Operations of the wedge shaders, counted by running them: see
+//! [`gnomon_raster::shader::Operations`] for what one is.
 //!
-//! An operation is one of + − × ÷ √, an absolute value, comparison, selection,
-//! minimum, maximum, rounding, conversion, shift or bitwise operation on one float
-//! of one fragment. A fetch counts apart. The papers count instructions of vertex
-//! and pixel shaders of 2003, each of which works on up to four floats at once, so
-//! numbers of theirs and ours are not to be compared with one another, only ratios.
-//!
-//! Rectangles only; the parts are those of `soft_volumes.rs`, `split_volumes.rs`
-//! and `coverage/`.
+//! The papers count instructions of vertex and pixel shaders of 2003, each of which works
+//! on up to four floats at once, so numbers of theirs and ours are not to be compared
+//! with one another, only ratios.
 
-/// Operations and texture fetches of one invocation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Work {
-    pub(super) operations: u64,
-    pub(super) fetches: u64,
+use gnomon_raster::shader::Operations;
+use gnomon_shaders::coverage::{FlatLight, Image, Projector, SphereLight};
+use gnomon_shaders::coverage_table::CoverageTable;
+use gnomon_shaders::soft_volumes::{CoverTo, Covering, ExactCoverage, HardPlane, Penumbra};
+use gnomon_shaders::split_volumes::textured::SplitTextured;
+use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
+
+/// A light that shaders project on: what they do depends on its kind alone.
+fn rectangle() -> Projector {
+    Projector::Flat(FlatLight {
+        origin: [0.0; 3],
+        far: None,
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        image: Image::Square,
+    })
 }
 
-/// Position relative to the light, and whether shadow falls there.
-const RECEIVER: u64 = 3 + 1;
-/// Light coordinates of the receiver (3 x 5), images of both ends (2 x 7), side.
-const PROJECT: u64 = 15 + 14 + 1;
-/// Four cuts: two distances and eleven operations each.
-const CLIP: u64 = 4 * (2 + 11);
-/// Both clipped ends: interpolation, exact ends, division.
-const ENDS: u64 = 2 * 21;
-/// Which fragments have a segment.
-const SOME: u64 = 5;
-/// Two swept areas of 15, ten that join them, cross product, share.
-const COVERED: u64 = 2 * 15 + 10 + 4 + 5;
-/// Side of the hard plane.
-const SIDE: u64 = 6;
-/// What both papers' shaders do before coverage, and the side after it.
-const COMMON: u64 = RECEIVER + PROJECT + CLIP + ENDS + SOME + SIDE;
+fn sphere() -> Projector {
+    Projector::Sphere(SphereLight {
+        origin: [0.0; 3],
+        far: None,
+        radius: 1.0,
+        seen: false, // as in paper IV
+    })
+}
 
-/// Paper III, closed form.
-pub(super) const PAPER3_EXACT: Work = Work {
-    operations: COMMON + COVERED + 6,
-    fetches: 1,
+fn plane() -> HardPlane {
+    HardPlane::through_centre([0.0, 1.0, 0.0])
+}
+
+fn paper3<C: Covering + 'static>(covering: C) -> Operations {
+    Operations::of(&Penumbra {
+        light: rectangle(),
+        covering,
+        edge: [[0.0; 3]; 2],
+        plane: plane(),
+        to: CoverTo::Visibility,
+    })
+}
+
+/// Paper III, closed form, rectangle.
+pub(super) fn paper3_exact() -> Operations {
+    paper3(ExactCoverage)
+}
+
+/// Paper III, 4D texture, the nearest entry, rectangle.
+pub(super) fn paper3_table() -> Operations {
+    paper3(CoverageTable {
+        size: 32,
+        linear: false,
+        vertex_centred: false,
+        whole: false,
+    })
+}
+
+fn paper4(light: Projector, tables: Tables) -> Operations {
+    Operations::of(&SplitPenumbra {
+        light,
+        edge: [[0.0; 3]; 2],
+        plane: plane(),
+        tables,
+        halves: Halves::Both,
+    })
+}
+
+/// What paper IV looks up.
+const LOOKED_UP: Tables = Tables {
+    coverage: true,
+    split: true,
 };
 
-/// Paper III, 4D texture, nearest: four places of 6, address of 6, three colours
-/// of 4, sign.
-pub(super) const PAPER3_TABLE: Work = Work {
-    operations: COMMON + 4 * 6 + 6 + 3 * 4 + 6,
-    fetches: 2,
-};
+/// Paper IV, arithmetic, rectangle.
+pub(super) fn paper4_arithmetic() -> Operations {
+    paper4(rectangle(), Tables::default())
+}
 
-/// Paper IV, arithmetic: 12 bits split by shifts, selection of the buffer.
-pub(super) const PAPER4_ARITHMETIC: Work = Work {
-    operations: COMMON + COVERED + 18 + 8,
-    fetches: 1,
-};
+/// Paper IV, all tables, rectangle.
+pub(super) fn paper4_tables() -> Operations {
+    paper4(rectangle(), LOOKED_UP)
+}
 
-/// Paper IV, all tables: two angles of 21, two area coordinates of 4, triangle and
-/// share of 8, split of 5. The shader works out the closed form too, for lack of a
-/// branch, which is not counted.
-pub(super) const PAPER4_TABLES: Work = Work {
-    operations: COMMON + 2 * 21 + 2 * 4 + 8 + 5 + 8,
-    fetches: 5,
-};
+/// Paper IV, all tables, sphere.
+pub(super) fn paper4_sphere() -> Operations {
+    paper4(sphere(), LOOKED_UP)
+}
+
+/// Paper IV, 4D texture, rectangle.
+pub(super) fn paper4_textured() -> Operations {
+    Operations::of(&SplitTextured {
+        light: rectangle(),
+        covering: CoverageTable {
+            size: 32,
+            linear: false,
+            vertex_centred: false,
+            whole: false,
+        },
+        edge: [[0.0; 3]; 2],
+        plane: plane(),
+        halves: Halves::Both,
+        colors: 1,
+    })
+}
 
 /// The papers' own figures: instructions with texture loads (paper III, §4; paper
 /// IV, §6).
@@ -73,12 +121,35 @@ pub(super) mod published {
 mod tests {
     use super::*;
 
+    /// Look-ups are the papers': position, two angles, area and split; position and table.
     #[test]
-    fn sums_are_as_documented() {
-        assert_eq!(COMMON, 139);
-        assert_eq!(PAPER3_EXACT.operations, 194);
-        assert_eq!(PAPER3_TABLE.operations, 187);
-        assert_eq!(PAPER4_ARITHMETIC.operations, 214);
-        assert_eq!(PAPER4_TABLES.operations, 210);
+    fn look_ups_are_those_of_the_papers() {
+        assert_eq!(paper3_exact().look_ups, 1);
+        assert_eq!(paper3_table().look_ups, 2);
+        assert_eq!(paper4_arithmetic().look_ups, 1);
+        assert_eq!(paper4_tables().look_ups, 5);
+        assert_eq!(paper4_sphere().look_ups, 5);
+        assert_eq!(paper4_textured().look_ups, 2);
+    }
+
+    /// With the closed form besides, tables would take half as many operations more.
+    #[test]
+    fn tables_compute_nothing_that_they_replace() {
+        let of = |coverage, split| paper4(rectangle(), Tables { coverage, split });
+        let [none, coverage] = [false, true].map(|c| of(c, false).operations);
+        println!("arithmetic {none}, coverage looked up {coverage}");
+        assert!(coverage < none + 30, "{coverage} {none}");
+        assert!(
+            of(false, true).operations < none,
+            "the split is looked up alone"
+        );
+    }
+
+    /// Shaders that do more have more operations.
+    #[test]
+    fn operations_are_counted() {
+        assert!(paper3_exact().operations > 100);
+        assert!(paper4_arithmetic().operations > paper3_exact().operations);
+        assert!(paper4_sphere().operations != paper4_tables().operations);
     }
 }

@@ -1,4 +1,4 @@
-//! Coverage from a four-dimensional texture (paper III, §3.2.3), which knows the
+//! Coverage from a four-dimensional texture (paper III, §3.3), which knows the
 //! light's colours: entry (x0, y0, x1, y1) is the covered share of each colour for
 //! the clipped edge between the two points.
 //!
@@ -23,12 +23,52 @@ pub struct CoverageTable {
     /// The first and last entries are on the light's border; else entries are at
     /// the centres of `size` equal cells.
     pub vertex_centred: bool,
+    /// Entries hold the share, and not twice the share: colours in 8 bits, of which all
+    /// may be covered.
+    pub whole: bool,
 }
 uniforms!(CoverageTable {
     size,
     linear,
-    vertex_centred
+    vertex_centred,
+    whole
 });
+
+/// Coverage between two images of a light, one texture for each: lights add up, and so do
+/// their coverages, by how much of each colour comes from which (paper III, §3.3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlendedTables {
+    /// How both textures are read.
+    pub table: CoverageTable,
+    /// How much of each colour comes from the second.
+    pub parts: [f32; 3],
+}
+uniforms!(BlendedTables { table, parts });
+
+impl BlendedTables {
+    /// Covered share of each colour, from the textures in `slot` and the next.
+    #[inline(always)]
+    pub fn look_up<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        slot: usize,
+        segment: &Segment<L>,
+    ) -> [F32<L>; 3] {
+        let mut sum = [F32::splat(l, 0.0); 3];
+        for k in 0..2 {
+            let share = self.table.look_up(l, f, slot + k, segment);
+            sum = each3(
+                #[inline(always)]
+                |i| {
+                    let part = self.parts[i];
+                    sum[i] + share[i] * if k == 0 { 1.0 - part } else { part }
+                },
+            );
+        }
+        sum
+    }
+}
 
 impl CoverageTable {
     /// Coordinate, -1..1, of entry `index` along one dimension.
@@ -54,6 +94,22 @@ impl CoverageTable {
         place.clamp(0.0, n - 1.0)
     }
 
+    /// An end for the linear filter: near the light's centre coverage depends on the
+    /// direction alone, and entries on all sides of the centre have nothing to do with
+    /// it. So ends are looked up two entries away from there, on their ray.
+    #[inline(always)]
+    fn off_centre<L: Lanes>(&self, l: L, [x, y]: [F32<L>; 2]) -> [F32<L>; 2] {
+        if !self.linear {
+            return [x, y];
+        }
+        let one = F32::splat(l, 1.0);
+        let least = F32::splat(l, (4.0 / (self.size as f32 - 1.0)).min(1.0));
+        let reach = x.abs().max(y.abs());
+        let near = reach.lt(least) & reach.gt(F32::splat(l, 0.0));
+        let scale = near.select_f32(least, one) / near.select_f32(reach, one);
+        [x * scale, y * scale]
+    }
+
     /// Covered share of each colour, from the texture in `slot`.
     #[inline(always)]
     pub fn look_up<L: Lanes>(
@@ -64,6 +120,7 @@ impl CoverageTable {
         segment: &Segment<L>,
     ) -> [F32<L>; 3] {
         let [p, q] = segment.ends;
+        let [p, q] = [self.off_centre(l, p), self.off_centre(l, q)];
         let places = [
             self.place(p[0]),
             self.place(p[1]),
@@ -71,10 +128,11 @@ impl CoverageTable {
             self.place(q[1]),
         ];
         let zero = F32::splat(l, 0.0);
-        let twice = self.filtered(l, f, slot, places);
+        let entry = self.filtered(l, f, slot, places);
+        let scale = if self.whole { 1.0 } else { 0.5 };
         each3(
             #[inline(always)]
-            |i| segment.some.select_f32(twice[i] * 0.5, zero),
+            |i| segment.some.select_f32(entry[i] * scale, zero),
         )
     }
 

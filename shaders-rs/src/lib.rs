@@ -16,6 +16,7 @@
 //! * [`smoothies`]: geometry that softens the edges of shadow maps
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
+//! * [`visibility_buffers`]: paper III's float buffer without blending, and its 8-bit one
 //! * [`surface`]: ambient, Lambert and Phong shading of surfaces
 //!
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
@@ -44,6 +45,7 @@ pub mod split_volumes;
 pub mod surface;
 pub mod transform;
 mod vector;
+pub mod visibility_buffers;
 
 use gnomon_raster::shader::{FragmentStage, Named, ShaderTable, ShaderTableError, VertexStage};
 
@@ -112,13 +114,21 @@ stages! {
         surface::FacetValue: "surface.facet-value" 1,
         surface::Shadowed<surface::Lambert>: "surface.shadowed-lambert" 1,
         surface::Shadowed<surface::Phong>: "surface.shadowed-phong" 1,
+        surface::ShadowedByBytes<surface::Lambert>: "surface.shadowed-by-bytes-lambert" 1,
+        surface::ShadowedByBytes<surface::Phong>: "surface.shadowed-by-bytes-phong" 1,
         soft_volumes::HardCount: "soft-volumes.hard-count" 1,
         soft_volumes::Resolve: "soft-volumes.resolve" 1,
+        visibility_buffers::QuadCount: "visibility-buffers.quad-count" 1,
+        visibility_buffers::ResolveRedGreen: "visibility-buffers.resolve-red-green" 1,
         soft_volumes::Penumbra<soft_volumes::ExactCoverage>: "soft-volumes.penumbra-exact" 1,
-        soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 1,
+        soft_volumes::Penumbra<coverage_table::CoverageTable>: "soft-volumes.penumbra-table" 2,
+        soft_volumes::Penumbra<coverage_table::BlendedTables>: "soft-volumes.penumbra-blended" 1,
         split_volumes::SplitPenumbra: "split-volumes.penumbra" 1,
-        split_volumes::CombineGroups: "split-volumes.combine-groups" 1,
-        split_volumes::AddVisibility: "split-volumes.add-visibility" 1,
+        split_volumes::textured::SplitTextured<coverage_table::CoverageTable>:
+            "split-volumes.textured-table" 1,
+        split_volumes::textured::SplitTextured<coverage_table::BlendedTables>:
+            "split-volumes.textured-blended" 1,
+        split_volumes::resolve::ResolveSplit: "split-volumes.resolve" 1,
         penumbra::face::WedgeFace: "penumbra.wedge-face" 1,
         penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 2,
         penumbra::inside::WedgeInside: "penumbra.wedge-inside" 2,
@@ -182,6 +192,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 58);
+        assert_eq!(table.fragment_shaders().count(), 64);
     }
 }

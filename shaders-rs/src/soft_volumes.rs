@@ -15,7 +15,7 @@ use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
 use crate::coverage::outlined;
 use crate::coverage::{Edge, Projector, Segment, clip, covered};
-use crate::coverage_table::CoverageTable;
+use crate::coverage_table::{BlendedTables, CoverageTable};
 use crate::transform::{ClipFromWorld, FullScreen};
 
 /// The first `N` textures at the fragment's own pixel; zero beyond `count`. One
@@ -115,6 +115,16 @@ fn umbra_side<L: Lanes>(l: L, normal: [F32<L>; 3], offset: F32<L>, from: [F32<L>
     (dot3(normal, from) + offset).lt(F32::splat(l, 0.0))
 }
 
+/// The predicate for the plane in the varyings of [`HardQuads`].
+#[inline(always)]
+pub(crate) fn umbra_side_of<L: Lanes>(l: L, f: &mut Fragment<'_, L>, from: [F32<L>; 3]) -> Mask<L> {
+    let normal = each3(
+        #[inline(always)]
+        |i| f.varying(i),
+    );
+    umbra_side(l, normal, f.varying(4), from)
+}
+
 /// Attributes: homogeneous position, normal of the quad's [`HardPlane`], 1 where the
 /// eye is on its umbra side, else 0, and its offset where there are `offsets`. Five
 /// flat varyings.
@@ -162,8 +172,11 @@ pub enum CountTo {
     Visibility,
     /// Alpha of attachments 0 and 1, in steps of 1/255: leaving, and entering.
     Alpha,
+    /// No attachment: what crosses no quad is discarded, and the draw's stencil
+    /// operations count the rest.
+    Stencil,
 }
-uniforms!(enum CountTo { 0: Visibility, 1: Alpha });
+uniforms!(enum CountTo { 0: Visibility, 1: Alpha, 2: Stencil });
 
 /// Counts hard shadow quads between the eye and the surface: those whose plane
 /// has them on different sides. It needs no depth test and no caps, and is right
@@ -179,7 +192,10 @@ uniforms!(HardCount { origin, to });
 
 impl FragmentShader for HardCount {
     fn outputs(&self) -> FragmentOutputs {
-        reads(1)
+        FragmentOutputs {
+            discards: self.to == CountTo::Stencil,
+            ..reads(1)
+        }
     }
 
     #[inline(always)]
@@ -204,6 +220,7 @@ impl FragmentShader for HardCount {
                 f.set_color(0, [zero, zero, zero, left]);
                 f.set_color(1, [zero, zero, zero, entered.max(zero) * step]);
             }
+            CountTo::Stencil => f.discard(entered.eq(zero)),
         }
     }
 }
@@ -241,8 +258,11 @@ pub enum CoverTo {
     Copied,
     /// Coverage in 6 of 8 bits to attachment 0 on the umbra side, else to 1.
     SixBits,
+    /// The same of one colour, to red of attachment 0 on the umbra side, else to green
+    /// (paper III, §4.2).
+    RedGreen,
 }
-uniforms!(enum CoverTo { 0: Visibility, 1: Copied, 2: SixBits });
+uniforms!(enum CoverTo { 0: Visibility, 1: Copied, 2: SixBits, 3: RedGreen });
 
 /// Largest coverage in 6 of 8 bits: four of them always fit.
 pub const SIX_BITS: f32 = 63.0;
@@ -284,6 +304,21 @@ impl Covering for ExactCoverage {
 
 impl Covering for CoverageTable {
     const TEXTURES: usize = 3;
+
+    #[inline(always)]
+    fn share<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        _: &Projector,
+        segment: &Segment<L>,
+    ) -> [F32<L>; 3] {
+        self.look_up(l, f, 2, segment)
+    }
+}
+
+impl Covering for BlendedTables {
+    const TEXTURES: usize = 4;
 
     #[inline(always)]
     fn share<L: Lanes>(
@@ -359,6 +394,12 @@ impl<C: Covering> FragmentShader for Penumbra<C> {
                 );
                 f.set_color(0, [add[0], add[1], add[2], zero]);
                 f.set_color(1, [take[0], take[1], take[2], zero]);
+            }
+            CoverTo::RedGreen => {
+                let bits = (share[0] * SIX_BITS).round_ties_even() / 255.0;
+                let add = inside.select_f32(bits, zero);
+                let take = inside.select_f32(zero, bits);
+                f.set_color(0, [add, take, zero, zero]);
             }
         }
     }

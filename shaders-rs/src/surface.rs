@@ -173,6 +173,45 @@ impl<S: Reflection> FragmentShader for Shadowed<S> {
     }
 }
 
+/// The same by a visibility in two bytes: red the high one, green the low one, which
+/// together are a whole number, times `scale`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowedByBytes<S> {
+    /// The surface.
+    pub surface: S,
+    /// Visibility of one step.
+    pub scale: f32,
+}
+uniforms!(ShadowedByBytes<S> { surface, scale });
+
+impl<S: Reflection> FragmentShader for ShadowedByBytes<S> {
+    fn outputs(&self) -> FragmentOutputs {
+        FragmentOutputs {
+            textures: 1,
+            ..FragmentOutputs::default()
+        }
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let at = [f.column(), f.row(), I32::splat(l, 0)];
+        let [high, low, _, _] = f.fetch_texel(0, at, 0);
+        let visible = (two_bytes(high, low) * self.scale).clamp(0.0, 1.0);
+        let light = self.surface.light(l, f);
+        let [r, g, b] = each3(
+            #[inline(always)]
+            |i| light[i] * visible,
+        );
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+    }
+}
+
+/// The whole number of two 8-bit unorm channels.
+#[inline(always)]
+pub(crate) fn two_bytes<L: Lanes>(high: F32<L>, low: F32<L>) -> F32<L> {
+    (high * 255.0).round_ties_even() * 256.0 + (low * 255.0).round_ties_even()
+}
+
 /// Diffuse light: `diffuse · max(n·l, 0)`, alpha 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambert {

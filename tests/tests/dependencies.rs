@@ -173,16 +173,17 @@ fn reporting_stays_in_the_command_line() {
     }
 }
 
-/// Environment maps are input: one module of the pipeline decodes them, and none
-/// encodes pictures.
+/// Environment maps and images of lights are input: a module of the pipeline decodes
+/// each, and none encodes pictures.
 #[test]
-fn pictures_are_decoded_in_one_place_of_the_pipeline() {
+fn pictures_are_decoded_where_they_are_read() {
     // A module of the oracle is called image, too, and used with `pub use`.
     let uses_it = |code: &str| code.trim_start().starts_with("use image::");
     let users = lines_where(&root().join("pipeline/src"), uses_it);
     assert!(!users.is_empty());
     for (path, line) in users {
-        let module = |at: &Path| at.ends_with("environment/read");
+        let module =
+            |at: &Path| at.ends_with("environment/read") || at.ends_with("light_image/read");
         let only = module(&path.with_extension("")) || path.parent().is_some_and(module);
         assert!(only, "{}: {line}", path.display());
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use gnomon_pipeline::technique::{Params, Technique, TechniqueError, Warning};
+use gnomon_pipeline::technique::{LIGHT_FRAME, Params, Technique, TechniqueError, Warning};
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::scene::{Scene, SceneError, SceneSource};
 
@@ -43,6 +43,11 @@ pub(crate) struct FrameArgs {
     /// Frames per second of an animation [default: 24]
     #[arg(long, value_name = "F", value_parser = parse_rate, requires = "frames")]
     pub(crate) fps: Option<f64>,
+    /// Images of a light's sequence per second of an animation, as files of light-image
+    /// or the fire have them; a fraction of --fps blends neighbours [default: that of --fps,
+    /// an image a frame]
+    #[arg(long, value_name = "F", value_parser = parse_rate, requires = "frames")]
+    pub(crate) light_fps: Option<f64>,
     /// Keep in this folder what techniques compute ahead of frames (the transport of
     /// deferred-shadowing), and look there first [default: for this run only]
     #[arg(long, value_name = "DIR")]
@@ -87,6 +92,16 @@ impl FrameArgs {
         parameters(technique, &self.settings, self.gpu.no_skip)
     }
 
+    /// The parameters of frame number `frame` of an animation: lights show the image of
+    /// that number of their sequence, or the one at its time.
+    pub(crate) fn params_of(&self, params: &Params, frame: u32) -> Params {
+        let images = match self.light_fps {
+            Some(rate) => f64::from(frame) * rate / self.rate(),
+            None => f64::from(frame),
+        };
+        params.with_later_image(images)
+    }
+
     /// As asked for, or as the scene wants it.
     pub(crate) fn size_of(&self, scene: &Scene) -> [u32; 2] {
         self.size.or(scene.size).unwrap_or(DEFAULT_SIZE)
@@ -100,6 +115,18 @@ impl FrameArgs {
     /// The time of frame number `frame`.
     pub(crate) fn time_of(&self, frame: u32) -> f64 {
         self.time + f64::from(frame) / self.rate()
+    }
+
+    /// A rate of images for a technique that shows none would go unnoticed.
+    pub(crate) fn check_light_fps(&self, params: &Params) -> Result<(), CliError> {
+        match self.light_fps {
+            Some(rate) if params.text(LIGHT_FRAME).is_none() => Err(CliError::Flag {
+                flag: "--light-fps",
+                value: rate.to_string(),
+                valid: format!("'{}' puts no images on lights", params.technique()),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Frames that are very long may leave the range of numbers.

@@ -67,6 +67,7 @@ fn kind(domain: &Domain) -> &'static str {
         },
         Domain::Decimal { .. } => "decimal",
         Domain::List { .. } => "list",
+        Domain::Images { .. } => "images",
         Domain::Technique => "technique",
     }
 }
@@ -82,7 +83,7 @@ fn default(value: Value) -> Json {
 /// Smallest and largest number; `null` for none, and for no end.
 fn range(domain: &Domain) -> Json {
     match domain {
-        Domain::Words(_) | Domain::Technique => Json::Null,
+        Domain::Words(_) | Domain::Images { .. } | Domain::Technique => Json::Null,
         Domain::Whole { range, .. } => json!({
             "min": range[0], "max": range[1], "min_included": true,
         }),

@@ -9,6 +9,7 @@ mod common;
 mod compare;
 mod draws;
 mod environment;
+mod light_images;
 mod looking_inside;
 mod overlays;
 mod pixel;

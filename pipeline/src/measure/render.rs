@@ -254,6 +254,13 @@ fn visibility(
             let value = |t: &ColorTexel| (t.0[0] * scale + offset).clamp(0.0, 1.0);
             pixels(texels.iter().map(value), size)?
         }
+        VisibilityOutput::Bytes { texture, scale } => {
+            let texels = gpu.texture(texture)?.read_color(Subresource::default())?;
+            let byte = |v: f32| (v * 255.0).round_ties_even();
+            let whole = |t: &ColorTexel| byte(t.0[0]) * 256.0 + byte(t.0[1]);
+            let value = |t: &ColorTexel| (whole(t) * scale).clamp(0.0, 1.0);
+            pixels(texels.iter().map(value), size)?
+        }
     };
     let at = |(&depth, value)| if depth >= 1.0 { f32::NAN } else { value };
     pixels(depth.iter().zip(values).map(at), size)

@@ -231,6 +231,7 @@ impl<'a> SceneDraws<'a> {
         };
         if !self.highlights || material.specular == [0.0; 3] {
             return match visibility {
+                Some(v) if v.bytes => v.shadowed_by_bytes(lambert).stage(),
                 Some(v) => v.shadowed(lambert).stage(),
                 None => lambert.stage(),
             };
@@ -242,6 +243,7 @@ impl<'a> SceneDraws<'a> {
             eye: narrow(self.view.eye()),
         };
         match visibility {
+            Some(v) if v.bytes => v.shadowed_by_bytes(phong).stage(),
             Some(v) => v.shadowed(phong).stage(),
             None => phong.stage(),
         }

@@ -244,7 +244,7 @@ impl<'a> ShadowedFrame<'a> {
         self.recording.name_output("color", outputs.color)?;
         self.recording
             .name_output("depth-stencil", outputs.depth_stencil)?;
-        if let VisibilityOutput::Red { texture, .. } = visibility {
+        if let Some(texture) = visibility.texture() {
             self.recording.name_output("visibility", texture)?;
         }
         Ok(Frame {

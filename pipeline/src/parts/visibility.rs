@@ -14,7 +14,7 @@ use gnomon_raster::{
     ColorAttachment, Draw, Format, LoadOp, Recording, RenderPipeline, Sampler, StoreOp,
     Subresource, TextureBinding, TextureDescriptor, TextureId, VertexBuffer,
 };
-use gnomon_shaders::surface::Shadowed;
+use gnomon_shaders::surface::{Shadowed, ShadowedByBytes};
 
 use super::surface_draw::index_buffer;
 use super::view::View;
@@ -66,7 +66,8 @@ impl Positions {
     }
 }
 
-/// Visibility of a light: `texel · scale + offset`, limited to 0..=1.
+/// Visibility of a light: `texel · scale + offset`, limited to 0..=1; or a whole number
+/// in two bytes of the texel for `texel`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibilityTexture {
     /// The texture, of the picture's size.
@@ -77,6 +78,8 @@ pub struct VisibilityTexture {
     pub offset: f32,
     /// Red, green and blue apart; else red for all.
     pub coloured: bool,
+    /// Red is the high and green the low byte of what is scaled; nothing is added.
+    pub bytes: bool,
 }
 
 impl VisibilityTexture {
@@ -87,11 +90,27 @@ impl VisibilityTexture {
             scale: 1.0,
             offset: 0.0,
             coloured: false,
+            bytes: false,
         }
     }
 
-    /// Red, for the frame's outputs.
+    /// A texture whose red and green are two bytes of it, in steps of `scale`.
+    pub fn bytes(texture: TextureId, scale: f32) -> Self {
+        Self {
+            scale,
+            bytes: true,
+            ..Self::red(texture)
+        }
+    }
+
+    /// What the frame's outputs say of it: red of several colours.
     pub fn output(&self) -> VisibilityOutput {
+        if self.bytes {
+            return VisibilityOutput::Bytes {
+                texture: self.texture,
+                scale: self.scale,
+            };
+        }
         VisibilityOutput::Red {
             texture: self.texture,
             scale: self.scale,
@@ -99,7 +118,7 @@ impl VisibilityTexture {
         }
     }
 
-    /// A surface shader dimmed by it.
+    /// A surface shader dimmed by it, if it is not in bytes.
     pub fn shadowed<S>(&self, surface: S) -> Shadowed<S> {
         Shadowed {
             surface,
@@ -107,6 +126,12 @@ impl VisibilityTexture {
             offset: self.offset,
             coloured: self.coloured,
         }
+    }
+
+    /// A surface shader dimmed by its bytes.
+    pub fn shadowed_by_bytes<S>(&self, surface: S) -> ShadowedByBytes<S> {
+        let scale = self.scale;
+        ShadowedByBytes { surface, scale }
     }
 }
 

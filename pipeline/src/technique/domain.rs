@@ -69,6 +69,12 @@ pub enum Domain {
         /// Names besides the lists.
         words: &'static [&'static str],
     },
+    /// One of these names, or files of images with commas between them, which are read
+    /// when the value is given.
+    Images {
+        /// Names besides the files.
+        words: &'static [&'static str],
+    },
     /// A technique with settings behind colons, which it judges itself:
     /// `NAME:KEY=VALUE:...`.
     Technique,
@@ -81,7 +87,8 @@ impl Domain {
             Self::Words(words)
             | Self::Whole { words, .. }
             | Self::Decimal { words, .. }
-            | Self::List { words } => words,
+            | Self::List { words }
+            | Self::Images { words } => words,
             Self::Technique => &[],
         }
     }
@@ -98,6 +105,7 @@ impl Domain {
             }
             Self::Decimal { numbers, .. } => text.parse().is_ok_and(|x| takes_decimal(x, numbers)),
             Self::List { .. } => text.split('+').all(|n| n.parse::<u32>().is_ok()),
+            Self::Images { .. } => text.split(',').all(|name| !name.is_empty()),
             Self::Technique => !text.is_empty(),
         }
     }
@@ -132,6 +140,7 @@ impl Display for Domain {
             Self::Whole { range, kind, .. } => whole_numbers(range, kind),
             Self::Decimal { numbers, .. } => decimal_numbers(numbers),
             Self::List { .. } => "whole numbers from 0 with + between them, such as 0+3".to_owned(),
+            Self::Images { .. } => "image files with commas between them".to_owned(),
             Self::Technique => "a technique: NAME:KEY=VALUE:...".to_owned(),
         };
         match &words[..] {

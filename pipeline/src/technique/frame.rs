@@ -67,6 +67,24 @@ pub enum VisibilityOutput {
         /// Added to the product.
         offset: f32,
     },
+    /// Red and green of an 8-bit texture of the frame's size, at mip 0, layer 0, as the
+    /// high and the low byte of a whole number: that times `scale`, limited to 0..=1.
+    Bytes {
+        /// The texture.
+        texture: TextureId,
+        /// Visibility of one step.
+        scale: f32,
+    },
+}
+
+impl VisibilityOutput {
+    /// The texture that it is in, where it is in one.
+    pub fn texture(self) -> Option<TextureId> {
+        match self {
+            Self::Full | Self::StencilZero => None,
+            Self::Red { texture, .. } | Self::Bytes { texture, .. } => Some(texture),
+        }
+    }
 }
 
 /// How a caster's volume was counted.

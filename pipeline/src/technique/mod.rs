@@ -20,13 +20,14 @@ pub use condition::{Condition, LightFact};
 pub use domain::{Decimals, Domain, Value, Whole};
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
 pub use param::{Choice, Nested, Number, Param, ParamInfo, Setting, count, join};
-pub use params::{Params, SETTING_WITHOUT_EFFECT};
+pub use params::{LIGHT_FRAME, Params, SETTING_WITHOUT_EFFECT};
 pub use pass::{DrawRole, Pass, PassRole, Roles, apart};
 pub use wedges::{SceneWedges, WedgeKind};
 
 use crate::geometry::caster::RefusedCaster;
 use crate::truth::oracle::cache::{CacheWarning, OracleCache};
 use crate::world::error::LightError;
+use crate::world::light_image::{LightImage, LightImageError};
 use crate::world::scene::Scene;
 
 /// A way to shade a scene with shadows.
@@ -57,6 +58,15 @@ pub trait Technique: Sync {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError>;
+
+    /// The image on the rectangle lights of its frame, which the truth about them has
+    /// too; `None` for lights of one colour.
+    ///
+    /// # Errors
+    /// As the frame: settings that rule each other out.
+    fn light_image(&self, _params: &Params) -> Result<Option<LightImage>, TechniqueError> {
+        Ok(None)
+    }
 
     /// Makes what frames of `scene` need and takes long, such as precomputed transport, or
     /// reads it from `cache`; frames then find it. `done` is told of pieces of work, from
@@ -134,6 +144,16 @@ pub enum TechniqueError {
         value: String,
         /// The values taken.
         valid: String,
+    },
+    /// Files that are no images of a light.
+    #[error("parameter {key} of technique '{technique}': {why}")]
+    LightImage {
+        /// The technique.
+        technique: &'static str,
+        /// The parameter.
+        key: &'static str,
+        /// What is wrong.
+        why: LightImageError,
     },
     /// Two settings of which one rules the other out.
     #[error("technique '{technique}' cannot have both {}={} and {}={}: {why}", .settings[0].0, .settings[0].1, .settings[1].0, .settings[1].1)]

@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 
 use super::condition::Condition;
 use super::domain::{Decimals, Domain, Value, Whole};
+use crate::world::light_image::LightSequence;
 
 /// A parameter without its type: what lists, help and sweeps need to know.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -353,6 +354,23 @@ impl Param<Option<Vec<usize>>> {
     ) -> Self {
         let domain = Domain::List { words };
         Self::new(name, Value::Word(words[0]), domain, summary)
+    }
+}
+
+impl Param<LightSequence> {
+    /// Files of images with commas between them, or one of `words`, of which the first
+    /// is the default; read by [`Params::images`](super::Params::images).
+    pub const fn images(
+        words: &'static [&'static str],
+        name: &'static str,
+        summary: &'static str,
+    ) -> Self {
+        Self::new(
+            name,
+            Value::Word(words[0]),
+            Domain::Images { words },
+            summary,
+        )
     }
 }
 

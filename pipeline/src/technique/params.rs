@@ -1,7 +1,9 @@
 //! The values of a technique's parameters, given as `key=value`.
 
+use super::domain::Domain;
 use super::param::{Param, ParamInfo, Setting};
 use super::{Technique, TechniqueError, Warning};
+use crate::world::light_image::LightSequence;
 use crate::world::scene::Scene;
 
 /// Checked values of all parameters of a technique.
@@ -17,6 +19,8 @@ struct ParamValue {
     text: String,
     /// Asked for, be it the default.
     given: bool,
+    /// Of [`Domain::Images`], what the files hold.
+    images: Option<LightSequence>,
 }
 
 impl Params {
@@ -26,6 +30,7 @@ impl Params {
             info: *info,
             text: info.default.to_string(),
             given: false,
+            images: None,
         };
         Self {
             technique: technique.name(),
@@ -68,6 +73,7 @@ impl Params {
         if !value.info.domain.takes(text) {
             return Err(bad_value(technique, &value.info, text));
         }
+        value.images = read_images(technique, &value.info, text)?;
         value.text = text.to_owned();
         value.given = true;
         Ok(())
@@ -105,6 +111,33 @@ impl Params {
         let name = param.info.name;
         let value = self.find(name).ok_or_else(|| self.unknown(name))?;
         T::read(&value.text).ok_or_else(|| bad_value(self.technique, &value.info, &value.text))
+    }
+
+    /// The images of files that a parameter names; `None` where it has one of its words.
+    ///
+    /// # Errors
+    /// The technique does not list the parameter.
+    pub fn images(
+        &self,
+        param: &Param<LightSequence>,
+    ) -> Result<Option<&LightSequence>, TechniqueError> {
+        let name = param.info.name;
+        let value = self.find(name).ok_or_else(|| self.unknown(name))?;
+        Ok(value.images.as_ref())
+    }
+
+    /// The same, so many images later: [`LIGHT_FRAME`] is that much more, where there is
+    /// such a parameter.
+    #[must_use]
+    pub fn with_later_image(&self, by: f64) -> Self {
+        let mut later = self.clone();
+        let value = later.values.iter_mut().find(|v| v.info.name == LIGHT_FRAME);
+        if let Some(value) = value
+            && let Ok(now) = value.text.parse::<f64>()
+        {
+            value.text = (now + by).to_string();
+        }
+        later
     }
 
     /// Whether a parameter was asked for, be it with its default.
@@ -153,6 +186,27 @@ impl Params {
         }
     }
 }
+
+/// What the files hold that `text` names.
+fn read_images(
+    technique: &'static str,
+    info: &ParamInfo,
+    text: &str,
+) -> Result<Option<LightSequence>, TechniqueError> {
+    if !matches!(info.domain, Domain::Images { words } if !words.contains(&text)) {
+        return Ok(None);
+    }
+    let read = LightSequence::read(text.split(','));
+    read.map(Some).map_err(|why| TechniqueError::LightImage {
+        technique,
+        key: info.name,
+        why,
+    })
+}
+
+/// Name of the parameter that says which image of a sequence lights show; animations go
+/// through them by it.
+pub const LIGHT_FRAME: &str = "light-frame";
 
 /// Code of warnings of settings that change nothing.
 pub const SETTING_WITHOUT_EFFECT: &str = "setting-without-effect";

@@ -6,6 +6,7 @@ pub mod environment;
 pub mod error;
 pub mod files;
 pub mod light;
+pub mod light_image;
 pub mod material;
 pub(crate) mod memo;
 pub mod mesh;

@@ -133,6 +133,25 @@ fn kernels_become_brute_force_as_points_become_texels() {
     }
 }
 
+/// Discs reach to the far corners of texels: on a picture of few texels, where that is most
+/// of the disc, nothing that cones hold is missed on the whole.
+#[test]
+fn discs_miss_no_patch_of_a_coarse_picture() {
+    let scene = one_plate();
+    let base = ["map-size=8", "patches=rectangles"];
+    let mean = |set: &[&str]| {
+        let done = drawn(&scene, &[&base, set].concat());
+        let seen = done.visibility.iter().filter(|v| !v.is_nan());
+        let (sum, count) = seen.fold((0.0, 0u32), |(s, n), v| (s + f64::from(*v), n + 1));
+        sum / f64::from(count)
+    };
+    let all = mean(&["method=all"]);
+    let found = mean(&["samples=4096", "spread=4"]);
+    println!("{all} {found}");
+    assert!(all < 0.97, "{all}");
+    assert!((found - all).abs() < 0.1 * (1.0 - all), "{found} {all}");
+}
+
 /// T: as many fetches as points for each receiver, and no more.
 #[test]
 fn each_receiver_looks_up_88_patches() {

@@ -60,9 +60,7 @@ fn outlines_of_one_caster_are_combined_as_those_of_two() {
     assert!(rmse(&together, &by_outline) < 0.7 * summed);
 }
 
-/// A ring's hole is no outline of its own: it would hide less than nothing.
-#[test]
-fn a_hole_stays_with_its_outline() {
+fn ring_over_a_floor() -> Scene {
     let mut scene = builtin::build("cylinder").unwrap();
     scene.objects.retain(|o| !o.casts);
     let ring = shape::torus_knot(1, 0, 0.8, 0.0, 0.12, 32, 8, DVec3::Y);
@@ -70,6 +68,13 @@ fn a_hole_stays_with_its_outline() {
     scene
         .objects
         .push(Object::new("ring", mesh, Material::matt([0.6; 3])));
+    scene
+}
+
+/// A ring's hole is no outline of its own: it would hide less than nothing.
+#[test]
+fn a_hole_stays_with_its_outline() {
+    let scene = ring_over_a_floor();
     let one = optimised(&scene, &["combine=sum"]);
     for rule in ["paper", "bounded"] {
         let other = optimised(&scene, &[&*format!("combine={rule}")]);
@@ -99,4 +104,30 @@ fn the_bounded_rule_depends_on_no_order() {
         differ("paper") > 20,
         "three spheres in a row hide a part each"
     );
+}
+
+/// Loops as the paper writes them: where an outline has one loop nothing changes, and a
+/// ring's hole is filled, which is said.
+#[test]
+fn loops_fill_holes_as_the_paper_writes_it() {
+    let by = |over: &'static str| ["combine=paper", over];
+    let two = builtin::build("overlap").unwrap();
+    let [outlines, loops] =
+        ["combine-over=outline", "combine-over=loop"].map(|over| optimised(&two, &by(over)));
+    assert_eq!(outlines.visibility_hash(), loops.visibility_hash());
+    let ring = ring_over_a_floor();
+    let [outlines, loops] =
+        ["combine-over=outline", "combine-over=loop"].map(|over| optimised(&ring, &by(over)));
+    let told = |picture: &Rendered| {
+        picture
+            .warnings
+            .iter()
+            .any(|w| w.code == "loops-round-holes")
+    };
+    assert!(told(&loops) && !told(&outlines));
+    let pairs = outlines.visibility.iter().zip(&loops.visibility);
+    let darker = pairs.clone().filter(|(o, l)| *o - *l > 0.5).count();
+    let lighter = pairs.filter(|(o, l)| *l - *o > 1e-3).count();
+    println!("{darker} darker, {lighter} lighter");
+    assert!(darker > 20 && lighter == 0, "{darker} {lighter}");
 }

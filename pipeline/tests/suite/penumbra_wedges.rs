@@ -379,7 +379,8 @@ fn levels_of_quads_come_near_to_continuous_intensities() {
                     step.min(1.0 - step) < 1e-3,
                     "{name}: {a} of {levels} levels"
                 );
-                sum += f64::from(a - b).powi(2);
+                let off = f64::from(a - b);
+                sum += off * off;
                 count += 1;
             }
             assert!(shades.len() > levels as usize / 2, "{name}: {shades:?}");
@@ -406,7 +407,7 @@ fn planes_that_touch_a_square_light_are_nearer_to_the_truth_than_spheres() {
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
         let drawn = picture(&scene, technique, &set).visibility;
         let pairs = drawn.iter().zip(&truth).filter(|(a, _)| !a.is_nan());
-        let squares = pairs.map(|(a, b)| f64::from(a - b).powi(2));
+        let squares = pairs.map(|(a, b)| f64::from(a - b) * f64::from(a - b));
         (squares.sum::<f64>() / truth.len() as f64).sqrt()
     };
     for technique in [ORIGINAL, RESTRUCTURED] {

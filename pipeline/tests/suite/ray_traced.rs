@@ -129,6 +129,45 @@ fn scenes_are_the_truth_but_for_noise() {
     }
 }
 
+/// Rays end at their light: what lies behind it hides nothing.
+#[test]
+fn casters_behind_a_light_hide_nothing() {
+    let mut scene = lit_by("cylinder", POINTS[0].clone());
+    let above = shape::cuboid(DVec3::new(0.0, 6.0, 0.0), DVec3::new(30.0, 0.2, 30.0));
+    let without = by("ray-traced", &scene, &[]);
+    let lid = above.into_mesh(Shading::Flat).unwrap();
+    let matt = Material::matt([0.7; 3]);
+    scene.objects.push(Object::new("lid", lid, matt));
+    let with = by("ray-traced", &scene, &[]);
+    let lit = without.visibility.iter().filter(|v| **v == 1.0).count();
+    assert!(lit > 1000, "{lit}");
+    let same = |(a, b): (&f32, &f32)| a.is_nan() || a == b;
+    assert!(without.visibility.iter().zip(&with.visibility).all(same));
+}
+
+/// A facet that casts is lit on the side that is seen, be it its back: rays start there.
+#[test]
+fn facets_that_are_seen_from_behind_are_lit_from_there() {
+    for height in [4.0, -4.0] {
+        let mut light = builtin::build("cylinder").unwrap().lights[0].clone();
+        light.shape = LightShape::Point {
+            position: DVec3::new(0.3, height, 0.2),
+        };
+        let mut camera = Camera::look_at([0.0, height / 2.0, 0.0], [0.0, 0.0, 0.0]);
+        camera.up = DVec3::Z;
+        let sheet = shape::plane(1.0, 0.0).into_mesh(Shading::Flat).unwrap();
+        let objects = vec![Object::new("sheet", sheet, Material::matt([0.7; 3]))];
+        let picture = by("ray-traced", &Scene::new(camera, vec![light], objects), &[]);
+        let seen = picture.visibility.iter().filter(|v| !v.is_nan());
+        let (lit, dark): (Vec<&f32>, Vec<&f32>) = seen.partition(|v| **v == 1.0);
+        assert!(
+            lit.len() > 200 && dark.is_empty(),
+            "{height}: {}",
+            dark.len()
+        );
+    }
+}
+
 /// Nothing slips between triangles: inside a closed ball no light is seen, wherever rays
 /// go through edges and corners.
 #[test]

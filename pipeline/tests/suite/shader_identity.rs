@@ -103,6 +103,9 @@ fn settings(technique: &dyn Technique) -> Vec<Vec<String>> {
             ],
             &["brightest=1", "rest=penumbra-wedges"],
         ],
+        "soft-shadow-volumes" | "soft-shadow-volumes-optimised" => {
+            &[&["light-image=fire", "light-frame=0.5"]]
+        }
         "convolution-soft-shadows" => &[&["filter=sat", "m=8"], &["filter=sat-u32", "m=2"]],
         _ => &[],
     };

@@ -332,6 +332,16 @@ fn widths_follow_from_lights() {
         (*edge_u, *edge_v) = (*edge_u * 2.0, *edge_v * 2.0);
     }
     assert!((width(&scene) - 2.0 * one).abs() < 1e-9);
+    // A ball as wide as the square was: between the square's sides and its corners.
+    let LightShape::Rectangle { centre, .. } = scene.lights[0].shape else {
+        unreachable!("the scene's light is a square");
+    };
+    scene.lights[0].shape = LightShape::Sphere {
+        centre,
+        radius: 0.25,
+    };
+    let ball = width(&scene) / one;
+    assert!((0.7..1.35).contains(&ball), "{ball}");
     let position = DVec3::new(1.0, 5.0, 0.8);
     scene.lights[0].shape = LightShape::Point { position };
     assert_eq!(width(&scene), 0.0);

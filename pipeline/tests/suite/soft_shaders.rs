@@ -1,12 +1,12 @@
-//! Shaders of soft shadow volumes against their f64 twins, and 8-bit buffers
-//! against whole numbers, each drawn over the screen of a small GPU.
+//! Shaders of soft shadow volumes against their f64 twins, each drawn over the screen of
+//! a small GPU.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use gnomon_pipeline::geometry::coverage::{LightPlane, SphereOutline, loop_visibility, umbra_side};
 use gnomon_pipeline::world::light::LightShape;
-use gnomon_raster::shader::{FragmentOutputs, FragmentStage, ScalarFragmentOutput, per_fragment};
+use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
     ColorAttachment, CommandList, Draw, Format, Gpu, GpuConfig, IndexBuffer, LoadOp, RenderPass,
@@ -17,15 +17,13 @@ use gnomon_shaders::coverage::{FlatLight, Image, Projector, SphereLight};
 use gnomon_shaders::soft_volumes::{
     CountTo, CoverTo, ExactCoverage, HardCount, HardPlane, HardQuads, Penumbra,
 };
-use gnomon_shaders::split_volumes::{
-    AddVisibility, CAPACITY, Combination, CombineGroups, Halves, SplitPenumbra, Tables,
-};
+use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
 use gnomon_shaders::transform::{ClipFromWorld, FullScreen};
 
-const SIDE: u32 = 64;
-const COUNT: usize = (SIDE * SIDE) as usize;
+pub(crate) const SIDE: u32 = 64;
+pub(crate) const COUNT: usize = (SIDE * SIDE) as usize;
 
-fn gpu() -> Gpu {
+pub(crate) fn gpu() -> Gpu {
     Gpu::new(GpuConfig {
         threads: 1,
         ..GpuConfig::default()
@@ -33,12 +31,16 @@ fn gpu() -> Gpu {
     .unwrap()
 }
 
-fn texture(gpu: &mut Gpu, format: Format) -> TextureId {
+pub(crate) fn texture(gpu: &mut Gpu, format: Format) -> TextureId {
     let desc = TextureDescriptor::d2("t", format, SIDE, SIDE);
     gpu.create_texture(&desc).unwrap()
 }
 
-fn full_screen(fragment: FragmentStage, target: ColorTargetState, from: &[TextureId]) -> Draw {
+pub(crate) fn full_screen(
+    fragment: FragmentStage,
+    target: ColorTargetState,
+    from: &[TextureId],
+) -> Draw {
     let pipeline = RenderPipeline {
         label: "test".into(),
         vertex: FullScreen.stage(),
@@ -57,7 +59,12 @@ fn full_screen(fragment: FragmentStage, target: ColorTargetState, from: &[Textur
     }
 }
 
-fn submit(gpu: &mut Gpu, to: TextureId, load: LoadOp<[f32; 4]>, draws: Vec<Draw>) -> SubmitReport {
+pub(crate) fn submit(
+    gpu: &mut Gpu,
+    to: TextureId,
+    load: LoadOp<[f32; 4]>,
+    draws: Vec<Draw>,
+) -> SubmitReport {
     let pass = RenderPass {
         label: "test".into(),
         color: vec![ColorAttachment {
@@ -72,17 +79,17 @@ fn submit(gpu: &mut Gpu, to: TextureId, load: LoadOp<[f32; 4]>, draws: Vec<Draw>
     gpu.submit(&CommandList { passes: vec![pass] }).unwrap()
 }
 
-fn red(gpu: &Gpu, texture: TextureId) -> Vec<f32> {
+pub(crate) fn red(gpu: &Gpu, texture: TextureId) -> Vec<f32> {
     let texels = gpu.texture(texture).unwrap();
     let texels = texels.read_color(Subresource::default()).unwrap();
     texels.iter().map(|t| t.0[0]).collect()
 }
 
 /// A small multiplicative generator: the tests have to be the same everywhere.
-struct Random(u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
@@ -494,146 +501,5 @@ fn pieces_of_an_edge_cover_what_it_does() {
         let drift = drift.fold(0.0, f32::max);
         println!("{m} pieces: {drift:e}");
         assert!(drift < 1e-5, "{m}: {drift:e}");
-    }
-}
-
-/// One value of 12 bits, as the shader splits it.
-fn contribution(v: u32) -> FragmentStage {
-    let channels = [0, 3, 6, 9].map(|shift| (v >> shift & 7) as f32 / 255.0);
-    per_fragment(FragmentOutputs::default(), move |_| {
-        ScalarFragmentOutput::color(channels)
-    })
-}
-
-/// Adds contributions to either buffer and combines; `hard` is the hard visibility
-/// before.
-fn hidden_after(values: [&[u32]; 2], hard: f32) -> (f32, u64) {
-    let mut gpu = gpu();
-    let [added, taken] = [(); 2].map(|()| texture(&mut gpu, Format::Rgba8Unorm));
-    let count = texture(&mut gpu, Format::R32Float);
-    let [before, out] = [(); 2].map(|()| texture(&mut gpu, Format::Rgba32Float));
-    let mut saturated = 0;
-    for (to, values) in [added, taken].into_iter().zip(values) {
-        let draws = values
-            .iter()
-            .map(|v| full_screen(contribution(*v), ColorTargetState::ADDITIVE, &[]));
-        let report = submit(&mut gpu, to, LoadOp::Clear([0.0; 4]), draws.collect());
-        let events = report.passes[0].totals().events;
-        saturated += events.blend_saturated.iter().sum::<u64>();
-    }
-    submit(&mut gpu, count, LoadOp::Clear([hard; 4]), Vec::new());
-    let shader = CombineGroups { first: true };
-    let sources = [count, added, taken, before];
-    let draw = full_screen(shader.stage(), ColorTargetState::OPAQUE, &sources);
-    submit(&mut gpu, out, LoadOp::DontCare, vec![draw]);
-    (red(&gpu, out)[0], saturated)
-}
-
-#[test]
-fn thirty_six_full_contributions_fit_and_the_next_is_reported() {
-    assert_eq!(CAPACITY, 36);
-    let full = |n: usize| vec![4095; n];
-    // 1 - (0.5 - 36 + 36) is one half, exactly.
-    assert_eq!(hidden_after([&full(36), &[]], 0.5 - 36.0), (0.5, 0));
-    assert_eq!(hidden_after([&[], &full(36)], 0.5 + 36.0), (0.5, 0));
-    let (hidden, saturated) = hidden_after([&full(37), &[]], 0.5 - 37.0);
-    assert!(hidden > 0.6, "the 37th is lost: {hidden}");
-    assert_eq!(saturated, u64::from(4 * SIDE * SIDE));
-}
-
-/// Additive and subtractive streams of random length against sums of whole numbers.
-#[test]
-fn random_streams_are_whole_sums() {
-    let mut random = Random(3);
-    let mut stream =
-        |n: u32| -> Vec<u32> { (0..n).map(|_| (random.unit() * 4096.0) as u32).collect() };
-    for (more, less) in [
-        (1, 0),
-        (5, 3),
-        (0, 9),
-        (17, 20),
-        (36, 0),
-        (36, 36),
-        (12, 36),
-    ] {
-        let [added, taken] = [stream(more), stream(less)];
-        let sum = |values: &[u32]| i64::from(values.iter().sum::<u32>());
-        let difference = sum(&added) - sum(&taken);
-        let (whole, rest) = (difference.div_euclid(4095), difference.rem_euclid(4095));
-        let (hidden, saturated) = hidden_after([&added, &taken], -(whole as f32));
-        let want = 1.0 - rest as f32 / 4095.0;
-        assert!(
-            (hidden - want).abs() < 1e-5 && saturated == 0,
-            "{more} {less}: {hidden} {want}"
-        );
-    }
-}
-
-/// What the rule makes of groups that hide so much, a case per pixel.
-fn combined(groups: &[Vec<f32>], rule: Combination) -> Vec<f32> {
-    let mut gpu = gpu();
-    let [added, taken] = [(); 2].map(|()| texture(&mut gpu, Format::Rgba8Unorm));
-    let hard = texture(&mut gpu, Format::R32Float);
-    let so_far = [(); 2].map(|()| texture(&mut gpu, Format::Rgba32Float));
-    for (turn, hidden) in groups.iter().enumerate() {
-        let texels: Vec<[f32; 4]> = hidden.iter().map(|h| [1.0 - h; 4]).collect();
-        let target = gpu.texture_mut(hard).unwrap();
-        target.write_color(Subresource::default(), &texels).unwrap();
-        let shader = CombineGroups { first: turn == 0 };
-        let [to, before] = [turn % 2, (turn + 1) % 2].map(|k| so_far[k]);
-        let draw = full_screen(
-            shader.stage(),
-            ColorTargetState::OPAQUE,
-            &[hard, added, taken, before],
-        );
-        submit(&mut gpu, to, LoadOp::DontCare, vec![draw]);
-    }
-    let out = texture(&mut gpu, Format::R32Float);
-    let add = AddVisibility { rule, weight: 1.0 };
-    let last = so_far[(groups.len() + 1) % 2];
-    let draw = full_screen(add.stage(), ColorTargetState::ADDITIVE, &[last]);
-    submit(&mut gpu, out, LoadOp::Clear([0.0; 4]), vec![draw]);
-    red(&gpu, out).iter().map(|v| 1.0 - v).collect()
-}
-
-const RULES: [Combination; 3] = [Combination::Sum, Combination::Paper, Combination::Bounded];
-
-/// 16% and 4% of the light: the sum is 20%, the paper's rule and the bounded one
-/// give 18%.
-#[test]
-fn sixteen_and_four_are_eighteen() {
-    let groups = [0.16, 0.04].map(|hidden| vec![hidden; COUNT]);
-    for (rule, want) in RULES.into_iter().zip([0.20, 0.18, 0.18]) {
-        let got = combined(&groups, rule)[0];
-        assert!((got - want).abs() < 1e-6, "{rule:?}: {got}");
-    }
-}
-
-/// Between the largest and the sum, at most all; the paper's rule depends on the
-/// order of more than two, the others do not.
-#[test]
-fn rules_stay_between_the_largest_and_the_sum() {
-    let mut random = Random(9);
-    for n in 2..=6 {
-        let mut some = |_| -> Vec<f32> { (0..COUNT).map(|_| random.unit() as f32).collect() };
-        let groups: Vec<Vec<f32>> = (0..n).map(&mut some).collect();
-        for rule in RULES {
-            for (i, got) in combined(&groups, rule).into_iter().enumerate() {
-                let all = groups.iter().map(|g| g[i]);
-                let most = all.clone().fold(0.0, f32::max);
-                let sum = all.sum::<f32>().min(1.0);
-                assert!(
-                    got >= most - 1e-6 && got <= sum + 1e-6,
-                    "{rule:?} {n}: {most} {got} {sum}"
-                );
-            }
-        }
-    }
-    for (order, paper) in [([0.5, 0.3, 0.2], 0.75), ([0.2, 0.3, 0.5], 0.70)] {
-        let groups = order.map(|hidden| vec![hidden; COUNT]);
-        for (rule, want) in RULES.into_iter().zip([1.0, paper, 0.75]) {
-            let got = combined(&groups, rule)[0];
-            assert!((got - want).abs() < 1e-6, "{rule:?} {order:?}: {got}");
-        }
     }
 }

@@ -387,3 +387,69 @@ fn a_two_colour_light_is_two_half_lights() {
         "{both:?} {white:?}"
     );
 }
+
+/// Of a sphere no more is seen than up to its horizon: a box beside it, within the cone
+/// in which it is seen and nearer than its centre, hides nothing from right below. Half
+/// way down the same rays it does.
+#[test]
+fn what_is_behind_a_spheres_horizon_hides_nothing() {
+    use glam::DVec3;
+    use gnomon_pipeline::world::light::{Light, LightShape};
+    use gnomon_pipeline::world::mesh::Shading;
+    use gnomon_pipeline::world::scene::{Camera, Material, Object};
+    use gnomon_pipeline::world::shape;
+    let solid = |shape: shape::Shape| {
+        let mesh = shape.into_mesh(Shading::Flat).unwrap();
+        Object::new("solid", mesh, Material::matt([0.7; 3]))
+    };
+    let seen = |nearer: f64| {
+        let (centre, size) = (DVec3::new(1.01, 1.2, 0.0), DVec3::new(0.06, 0.04, 0.2));
+        let the_box = shape::cuboid(centre * nearer, size * nearer);
+        let floor = solid(shape::plane(4.0, 0.0)).receiver_only();
+        let light = Light {
+            shape: LightShape::Sphere {
+                centre: DVec3::Y * 1.5,
+                radius: 1.0,
+            },
+            colour: [1.0; 3],
+        };
+        // Looks at the point below, from under the box.
+        let camera = Camera::look_at([-2.0, 0.3, 0.4], [0.0, 0.0, 0.0]);
+        let scene = Scene::new(camera, vec![light], vec![floor, solid(the_box)]);
+        let done = soft(&scene, &[]);
+        done.visibility[(SIZE[0] * (SIZE[1] / 2) + SIZE[0] / 2) as usize]
+    };
+    let (behind, before) = (seen(1.0), seen(0.5));
+    println!("{behind} {before}");
+    assert!(behind > 0.999_99 && before < 0.999_5, "{behind} {before}");
+}
+
+/// Next to the hard edge, where ends come near the light's centre, linear look-ups are
+/// better than nearest ones, as elsewhere: no speckles.
+#[test]
+fn quadlinear_look_ups_do_not_speckle() {
+    for name in ["cylinder", "creature", "parallel-plates"] {
+        let scene = scene(name);
+        let exact = soft(&scene, &[]);
+        let off = |more: &[&str]| {
+            let set = [&["backend=texture4d"], more].concat();
+            let table = soft(&scene, &set);
+            let pairs = exact.visibility.iter().zip(&table.visibility);
+            let off = pairs.map(|(a, b)| f64::from((a - b).abs()));
+            let off: Vec<f64> = off.filter(|d| !d.is_nan()).collect();
+            let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
+            let max = off.iter().copied().fold(0.0, f64::max);
+            println!("{name} {set:?}: RMS {rms:.5} max {max:.4}");
+            (rms, max)
+        };
+        let nearest = off(&[]);
+        for centred in ["texture-centred=cell", "texture-centred=vertex"] {
+            let linear = off(&["texture-filter=quadlinear", centred]);
+            assert!(
+                linear.0 < nearest.0,
+                "{name} {centred}: {linear:?} {nearest:?}"
+            );
+            assert!(linear.1 < 0.25, "{name} {centred}: {linear:?} {nearest:?}");
+        }
+    }
+}

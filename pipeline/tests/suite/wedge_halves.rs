@@ -64,8 +64,10 @@ fn halves_change_no_bit() {
     for scene in &scenes {
         let reference = optimised(scene, &["skip=off"]);
         let sets = [
-            &["halves=on"][..],
-            &["halves=on", "skip=off"],
+            &["halves=off"][..],
+            &["halves=off", "skip=off"],
+            &["halves=off", "wedge=exact"],
+            &["halves=on"],
             &["halves=on", "wedge=exact"],
             &["halves=on", "wedge=paper3"],
         ];
@@ -112,9 +114,13 @@ fn wedges_that_nothing_splits_are_counted() {
             radius: 0.6,
         },
     );
-    let reference = optimised(&scene, &["skip=off"]);
+    let reference = optimised(&scene, &["skip=off", "halves=off"]);
     // Skipping is invisible where the light meets geometry, too.
-    for set in [&["halves=on"][..], &[], &["halves=on", "skip=off"]] {
+    for set in [
+        &["halves=on"][..],
+        &["halves=off"],
+        &["halves=on", "skip=off"],
+    ] {
         let other = optimised(&scene, set);
         assert_eq!(other.visibility_hash(), reference.visibility_hash());
     }

@@ -13,6 +13,7 @@
 mod erased;
 mod fragment;
 mod identity;
+mod operations;
 mod scalar;
 mod table;
 mod textures;
@@ -22,6 +23,7 @@ pub(crate) use erased::{ErasedFragmentShader, ErasedVertexShader};
 pub use fragment::{Fragment, FragmentOutputs, FragmentShader};
 pub(crate) use fragment::{PacketOutput, ShadeBlock, ShaderEvents, VaryingPlanes};
 pub use identity::{Named, ShaderIdentity, UniformError, UniformReader, UniformWriter, Uniforms};
+pub use operations::Operations;
 pub use scalar::{
     ScalarFragment, ScalarFragmentOutput, ScalarVertex, ScalarVertexOutput, per_fragment,
     per_vertex,

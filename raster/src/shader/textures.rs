@@ -84,6 +84,7 @@ impl<L: Lanes> Fragment<'_, L> {
     #[inline(always)]
     fn look_up(&mut self, slot: usize, coord: [F32<L>; 3], detail: &Detail<L>) -> [F32<L>; 4] {
         let l = self.lanes();
+        l.looked_up();
         let Some(bound) = self.textures.get(slot) else {
             return [F32::splat(l, 0.0); 4];
         };
@@ -106,6 +107,7 @@ impl<L: Lanes> Fragment<'_, L> {
         mip: u32,
         words: &mut Words,
     ) -> Option<(&Texture, u16)> {
+        self.lanes().looked_up();
         let texture = self.textures.get(slot)?.texture;
         let counted = self.counted_lanes();
         let log = self.log.as_mut().map(

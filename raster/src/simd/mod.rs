@@ -65,6 +65,11 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         f()
     }
 
+    /// Told of each look-up in a texture.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn looked_up(self) {}
+
     /// What every float operation's result passes through; the identity for
     /// full precision.
     #[inline(always)]

@@ -14,6 +14,7 @@
 //! Nothing is clipped against the light's plane: the edge has to lie in front of
 //! it, on the side given.
 
+mod polygon;
 mod round;
 mod square;
 
@@ -23,19 +24,22 @@ use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, Lanes, Mask, uniforms};
 
 use crate::vector::each2;
+pub use polygon::{MAX_CORNERS, Outline};
 
 /// Ends of a silhouette edge, in the coordinates of a projector.
 pub type Edge = [[f32; 3]; 2];
 
 /// What a light looks like in its own coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Image {
     /// The square -1..1.
     Square,
     /// The unit disc.
     Disc,
+    /// A convex polygon within the unit disc.
+    Polygon(Outline),
 }
-uniforms!(enum Image { 0: Square, 1: Disc });
+uniforms!(enum Image { 0: Square, 1: Disc, 2: Polygon(outline) });
 
 impl Image {
     /// Its area.
@@ -45,6 +49,7 @@ impl Image {
         match self {
             Self::Square => 4.0,
             Self::Disc => core::f32::consts::PI,
+            Self::Polygon(outline) => outline.area,
         }
     }
 }
@@ -73,7 +78,7 @@ pub struct Segment<L: Lanes> {
 /// compiled once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projector {
-    /// A parallelogram or a disc.
+    /// A parallelogram, a disc or a polygon.
     Flat(FlatLight),
     /// A sphere.
     Sphere(SphereLight),
@@ -116,7 +121,7 @@ impl Projector {
     }
 }
 
-/// A parallelogram or a flat disc, shining to one side. Edges are in light
+/// A parallelogram, flat disc or convex polygon, shining to one side. Edges are in light
 /// coordinates, from the light's origin: the third is the distance in front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatLight {
@@ -128,7 +133,7 @@ pub struct FlatLight {
     /// Covectors that give light coordinates; the third is positive where the
     /// light shines.
     pub axes: [[f32; 3]; 3],
-    /// Square for parallelograms.
+    /// Square for parallelograms; of polygons the corners.
     pub image: Image,
 }
 uniforms!(FlatLight {
@@ -355,6 +360,7 @@ pub fn clip<L: Lanes>(l: L, image: Image, projected: &Projected<L>) -> Segment<L
         || match image {
             Image::Square => square::clip(l, a, b, part),
             Image::Disc => round::clip(l, a, b, part),
+            Image::Polygon(outline) => polygon::clip(l, &outline, a, b, part),
         },
     );
     let (p, p_front) = at(l, a, b, from);
@@ -376,6 +382,7 @@ pub fn covered<L: Lanes>(l: L, image: Image, segment: &Segment<L>) -> F32<L> {
         || match image {
             Image::Square => square::sector(l, p, q),
             Image::Disc => round::sector(p, q),
+            Image::Polygon(outline) => polygon::sector(l, &outline, p, q),
         },
     );
     let zero = F32::splat(l, 0.0);

@@ -21,7 +21,7 @@ pub(super) fn clip<L: Lanes>(
 
 /// Leaves out what is negative of a function with values at both ends.
 #[inline(always)]
-fn cut<L: Lanes>(l: L, fa: F32<L>, fb: F32<L>, [from, to]: [F32<L>; 2]) -> [F32<L>; 2] {
+pub(super) fn cut<L: Lanes>(l: L, fa: F32<L>, fb: F32<L>, [from, to]: [F32<L>; 2]) -> [F32<L>; 2] {
     let zero = F32::splat(l, 0.0);
     let (na, nb) = (fa.lt(zero), fb.lt(zero));
     let t = fa / (fa - fb);

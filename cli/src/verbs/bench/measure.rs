@@ -8,6 +8,7 @@ use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
+use gnomon_pipeline::world::light_image::LightImage;
 use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::{GpuConfig, Traffic};
 
@@ -32,6 +33,8 @@ pub(super) struct Bench<'a> {
 struct Truth {
     scene: usize,
     size: [u32; 2],
+    /// What is on the light.
+    image: Option<LightImage>,
     reference: Reference,
 }
 
@@ -44,25 +47,35 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Asks the oracle about the task's scene, unless it was the last one asked about;
-    /// what went wrong with its cache.
+    /// Makes what the task needs and what is not timed: the truth, unless it is that of the
+    /// last task, and what the technique prepares once for a scene. What went wrong with
+    /// the folder that keeps both.
     pub(super) fn prepare(&mut self, task: &Task) -> Result<Vec<String>, CliError> {
+        let mut warnings = self.ask_oracle(task)?;
+        let entry = &self.suite.entries[task.entry];
+        let scene = &self.suite.scenes[task.scene].scene;
+        let prepared = entry
+            .technique
+            .prepare(scene, &entry.params, &self.cache, &|_| {});
+        // What is refused here the frame refuses too, which becomes the result.
+        let prepared = prepared.unwrap_or_default();
+        warnings.extend(prepared.iter().map(|w| w.to_string()));
+        Ok(warnings)
+    }
+
+    fn ask_oracle(&mut self, task: &Task) -> Result<Vec<String>, CliError> {
         let (scene, size) = (task.scene, task.cell.size);
+        let entry = &self.suite.entries[task.entry];
+        let image = entry.technique.light_image(&entry.params)?;
         let known = self.truth.as_ref();
-        if known.is_some_and(|t| (t.scene, t.size) == (scene, size)) {
+        if known.is_some_and(|t| (t.scene, t.size, &t.image) == (scene, size, &image)) {
             return Ok(Vec::new());
         }
-        let Suite {
-            scenes,
-            light,
-            reference,
-            ..
-        } = self.suite;
-        let reference = Reference::new(
-            &scenes[scene].scene,
-            *light,
+        let reference = Reference::with_light_image(
+            &self.suite.scenes[scene].scene,
+            (self.suite.light, image.as_ref()),
             size,
-            *reference,
+            self.suite.reference,
             Some(&self.cache),
             &|| {},
         )?;
@@ -70,14 +83,15 @@ impl<'a> Bench<'a> {
         self.truth = Some(Truth {
             scene,
             size,
+            image,
             reference,
         });
         Ok(warnings)
     }
 
-    /// Builds, draws, compares. What a technique or the GPU refuses is a result.
-    pub(super) fn measure(&mut self, task: &Task) -> Result<Stored, CliError> {
-        self.prepare(task)?;
+    /// Builds, draws, compares, once it is prepared. What a technique or the GPU refuses is a
+    /// result.
+    pub(super) fn measure(&self, task: &Task) -> Result<Stored, CliError> {
         let outcome = match self.draw(task) {
             Ok(measured) => Outcome::Measured(Box::new(measured)),
             Err(CliError::Render(refused)) => Outcome::Refused(one_line(&refused)),

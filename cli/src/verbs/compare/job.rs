@@ -7,6 +7,7 @@ use gnomon_pipeline::measure::render::RenderSettings;
 use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
+use gnomon_pipeline::world::light_image::LightImage;
 use gnomon_pipeline::world::scene::Scene;
 
 use super::args::{CompareArgs, EntryArg};
@@ -23,6 +24,8 @@ pub(super) struct CompareJob {
     /// Number of the light that shines.
     pub(super) light: usize,
     pub(super) entries: Vec<Entry>,
+    /// What is on the light, to all of the techniques.
+    pub(super) image: Option<LightImage>,
     pub(super) reference: ReferenceKind,
     pub(super) cache: OracleCache,
     pub(super) settings: RenderSettings,
@@ -51,6 +54,7 @@ impl CompareJob {
         files::check_target(&out)?;
         Ok(Self {
             light: args.light,
+            image: common_image(&entries)?,
             entries,
             reference: args.reference,
             cache: OracleCache::new(args.out_dir.join("oracle-cache")),
@@ -129,6 +133,27 @@ impl Entry {
             label,
         })
     }
+}
+
+/// The image that is on the light for all techniques: under another one another truth
+/// holds.
+fn common_image(entries: &[Entry]) -> Result<Option<LightImage>, CliError> {
+    let mut common = None;
+    for (number, entry) in entries.iter().enumerate() {
+        let image = entry.technique.light_image(&entry.params)?;
+        if number > 0 && image != common {
+            return Err(CliError::Flag {
+                flag: "light-image",
+                value: entry.label.clone(),
+                valid: format!(
+                    "all techniques compared have the same image on the light; '{}' has another",
+                    entries[0].label
+                ),
+            });
+        }
+        common = image;
+    }
+    Ok(common)
 }
 
 /// The parameter by which techniques choose lights.

@@ -35,9 +35,9 @@ pub(super) struct Measured {
 pub(super) fn run(job: &CompareJob, progress: &Progress) -> Result<Comparison, CliError> {
     progress.doing("computing the truth");
     let start = Instant::now();
-    let reference = Reference::new(
+    let reference = Reference::with_light_image(
         &job.scene,
-        job.light,
+        (job.light, job.image.as_ref()),
         job.settings.size,
         job.reference,
         Some(&job.cache),

@@ -17,6 +17,7 @@ pub(crate) fn run(args: &RecordArgs, registry: &Registry) -> Result<(), CliError
     check_extension("--out", &args.out, "gnt")?;
     let technique = registry.find(&args.frame.technique)?;
     let params = args.frame.params(technique)?;
+    args.frame.check_light_fps(&params)?;
     let mut source = args.frame.source()?;
     let (trace, warnings) = record(args, technique, &params, &mut source)?;
     let mut batch = Batch::default();
@@ -47,10 +48,11 @@ fn record(
         progress.doing(format!("frame {frame}"));
         let scene = source.at(args.frame.time_of(frame))?;
         let size = args.frame.size_of(&scene);
-        warnings.extend(args.frame.prepare(technique, params, &scene, &progress)?);
-        let drawn = technique.frame(&scene, size, params)?;
+        let params = args.frame.params_of(params, frame);
+        warnings.extend(args.frame.prepare(technique, &params, &scene, &progress)?);
+        let drawn = technique.frame(&scene, size, &params)?;
         recorder
-            .get_or_insert_with(|| start(args, technique, params, &scene, size))
+            .get_or_insert_with(|| start(args, technique, &params, &scene, size))
             .add(&drawn.recording)?;
         progress.step();
     }

@@ -45,6 +45,7 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
     let technique = registry.find(&args.frame.technique)?;
     job::check_wedges(args, technique, registry)?;
     let params = args.frame.params(technique)?;
+    args.frame.check_light_fps(&params)?;
     let mut source = args.frame.source()?;
     let progress = Progress::new(u64::from(count) * (2 + args.overlay.len() as u64));
     let mut table = Table::new("Frames", &["frame", "time", "took", "bytes", "color"]);
@@ -55,9 +56,10 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         let scene = source.at(time)?;
         let folder = choose_folder(args, &scene.name);
         let out = folder.join(format!("frame-{frame:04}.png"));
-        let job = RenderJob::of(args, technique, params.clone(), scene, Some(out))?;
-        let ahead = (args.frame).prepare(technique, &params, &job.scene, &progress)?;
-        let mut done = render(&job.scene, technique, &params, &job.settings)?;
+        let params = args.frame.params_of(&params, frame);
+        let job = RenderJob::of(args, technique, params, scene, Some(out))?;
+        let ahead = (args.frame).prepare(technique, &job.params, &job.scene, &progress)?;
+        let mut done = render(&job.scene, technique, &job.params, &job.settings)?;
         done.warnings.extend(ahead);
         progress.step();
         let files = write(&job, args, &done, &progress)?;

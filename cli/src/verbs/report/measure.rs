@@ -1,5 +1,6 @@
 //! Draws each technique and gathers what the page shows.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind, Score, shaded};
@@ -201,9 +202,23 @@ pub(super) fn measure_errors(
         return Ok(());
     }
     let kind = ReferenceKind::Exact;
-    let truth = Reference::new(scene, 0, settings.size, kind, None, &|| {})?;
+    let plain = Reference::new(scene, 0, settings.size, kind, None, &|| {})?;
     for (entry, subject) in entries.iter().zip(subjects) {
         let Some(done) = &subject.done else { continue };
+        let image = entry.technique.light_image(&entry.params)?;
+        let mut truth = Cow::Borrowed(&plain);
+        if let Some(image) = &image {
+            let of = (0, Some(image));
+            let size = settings.size;
+            truth = Cow::Owned(Reference::with_light_image(
+                scene,
+                of,
+                size,
+                kind,
+                None,
+                &|| {},
+            )?);
+        }
         let under = truth.under(&done.depth)?;
         let picture = shaded(scene, &truth, &under, &entry.params, settings)?;
         subject.score = Some(Score::measure(&under, done, &picture)?);

@@ -56,7 +56,7 @@ const TUNE_HELP: &str = "\
 Example: gnomon tune creature --max-error 0.02
 
 With --max-error the fastest that keeps all limits wins, else the one that errs least.
-Candidates are tried on small pictures first, and the better third goes on.
+Candidates are tried on small pictures first, and the better quarter goes on.
 
 That nothing fits is a result, not an error.
 

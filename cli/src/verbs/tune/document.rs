@@ -21,6 +21,7 @@ pub(super) struct TuneDocument {
     runners_up: Vec<CandidateDocument>,
     tried: usize,
     refused: usize,
+    warnings: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -61,6 +62,7 @@ impl TuneDocument {
             runners_up: found.others.iter().map(document).collect(),
             tried: found.tried,
             refused: found.refused,
+            warnings: found.warnings.clone(),
         }
     }
 }

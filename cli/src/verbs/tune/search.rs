@@ -13,9 +13,11 @@ use crate::verbs::bench::Pace;
 /// Fractions of width and height, and frames that are timed, stage after stage.
 const STAGES: [(u32, u32); 3] = [(4, 1), (2, 3), (1, 5)];
 /// One of so many goes on.
-const KEPT: usize = 3;
+const KEPT: usize = 4;
 /// But not fewer than these.
 const FEWEST: usize = 6;
+/// Of the best that go on so many are tried together, two and two.
+const CROSSED: usize = 12;
 /// By how much a limit may be missed on small pictures.
 const SLACK: f64 = 1.3;
 /// Frames that are timed when the winner is verified.
@@ -41,6 +43,8 @@ pub(super) struct Found {
     pub(super) tried: usize,
     /// Candidates that refused the scene.
     pub(super) refused: usize,
+    /// What went wrong with the folder that keeps truth and preparations.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Searches.
@@ -48,9 +52,11 @@ pub(super) fn search(job: &TuneJob) -> Result<Found, CliError> {
     let mut names = BTreeSet::new();
     let mut candidates = stars(&job.techniques);
     let (mut measured, mut refused) = (Vec::new(), 0);
+    let mut warnings = Vec::new();
     let mut stage = Stage::new(job, STAGES[0].0)?;
     for (number, (share, repeat)) in STAGES.into_iter().enumerate() {
         if number > 0 {
+            warnings.append(&mut stage.warnings);
             stage = Stage::new(job, share)?;
         }
         let mut pace = Pace::new(candidates.len());
@@ -73,16 +79,19 @@ pub(super) fn search(job: &TuneJob) -> Result<Found, CliError> {
         candidates = Vec::new();
         if number + 1 < STAGES.len() {
             candidates = survivors(&measured, &job.budget, stage.growth());
-            candidates.extend(fresh(crosses(&candidates), &names));
+            let best = &candidates[..CROSSED.min(candidates.len())];
+            candidates.extend(fresh(crosses(best), &names));
         }
     }
     measured.sort_by(|a, b| job.budget.order(&a.figures, &b.figures, 1.0));
-    let (winner, others) = verify(job, &stage, measured)?;
+    let (winner, others) = verify(job, &mut stage, measured)?;
+    warnings.append(&mut stage.warnings);
     Ok(Found {
         winner,
         others,
         tried: names.len(),
         refused,
+        warnings,
     })
 }
 
@@ -93,18 +102,25 @@ fn fresh(crosses: Vec<Candidate>, names: &BTreeSet<String>) -> Vec<Candidate> {
     new.filter(|c| known.insert(c.label())).collect()
 }
 
-/// The better third, should work grow with the pixels, and the better third, should it
-/// not grow at all: what it does lies between.
+/// The better quarter, should work grow with the pixels, and the better quarter, should it
+/// not grow at all: what it does lies between. The best of both come first.
 fn survivors(measured: &[Tried], budget: &Budget, growth: f64) -> Vec<Candidate> {
     let count = measured.len().div_ceil(KEPT).max(FEWEST);
     let best = |factor: f64| {
         let mut order: Vec<usize> = (0..measured.len()).collect();
         let figures = |k: usize| measured[k].figures.grown(factor);
         order.sort_by(|a, b| budget.order(&figures(*a), &figures(*b), SLACK));
-        order.into_iter().take(count)
+        order.truncate(count);
+        order
     };
-    let mut kept: BTreeSet<usize> = best(1.0).collect();
-    kept.extend(best(growth));
+    let mut kept: Vec<usize> = Vec::new();
+    for (a, b) in best(1.0).into_iter().zip(best(growth)) {
+        for k in [a, b] {
+            if !kept.contains(&k) {
+                kept.push(k);
+            }
+        }
+    }
     kept.into_iter()
         .map(|k| measured[k].candidate.clone())
         .collect()
@@ -113,7 +129,7 @@ fn survivors(measured: &[Tried], budget: &Budget, growth: f64) -> Vec<Candidate>
 /// The first that keeps the budget when it is measured anew, and what follows it.
 fn verify(
     job: &TuneJob,
-    stage: &Stage<'_>,
+    stage: &mut Stage<'_>,
     measured: Vec<Tried>,
 ) -> Result<(Option<Tried>, Vec<Tried>), CliError> {
     for (k, tried) in measured.iter().enumerate() {
@@ -174,6 +190,7 @@ mod tests {
             .map(|c| c.settings[0].1.parse().unwrap())
             .collect();
         assert!(ms.contains(&16.0) && ms.contains(&4.0), "{ms:?}");
-        assert!(!ms.contains(&30.0) && ms.len() <= 20, "{ms:?}");
+        assert!(!ms.contains(&30.0) && ms.len() <= 16, "{ms:?}");
+        assert_eq!(ms[0], 20.0, "the most exact of those that may fit: {ms:?}");
     }
 }

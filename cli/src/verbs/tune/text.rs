@@ -37,6 +37,9 @@ pub(super) fn summarise(job: &TuneJob, found: &Found) -> String {
             }
         }
     }
+    for warning in &found.warnings {
+        text += &format!("warning: {warning}\n");
+    }
     text
 }
 

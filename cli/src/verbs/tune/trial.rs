@@ -19,6 +19,8 @@ pub(super) struct Stage<'a> {
     pub(super) size: [u32; 2],
     /// Numbers of frames, with the truth.
     truths: Vec<(usize, Reference)>,
+    /// What went wrong with the folder that keeps truth and preparations.
+    pub(super) warnings: Vec<String>,
 }
 
 impl<'a> Stage<'a> {
@@ -33,7 +35,13 @@ impl<'a> Stage<'a> {
             let truth = Reference::new(scene, job.light, size, kind, Some(&job.cache), &|| {})?;
             truths.push((frame, truth));
         }
-        Ok(Self { job, size, truths })
+        let warnings = truths.iter().flat_map(|(_, truth)| &truth.warnings);
+        Ok(Self {
+            warnings: warnings.map(|w| w.to_string()).collect(),
+            job,
+            size,
+            truths,
+        })
     }
 
     /// Pixels of the job's pictures over those of this stage.
@@ -45,16 +53,22 @@ impl<'a> Stage<'a> {
     /// The largest of each figure over the frames; `None` for what is refused, or has no
     /// error.
     pub(super) fn measure(
-        &self,
+        &mut self,
         candidate: &Candidate,
         repeat: u32,
     ) -> Result<Option<Figures>, CliError> {
         let params = params(candidate, self.job.light)?;
         let mut figures = Figures::default();
         for (frame, reference) in &self.truths {
+            let scene = &self.job.frames[*frame];
+            let technique = candidate.technique;
+            // What is refused here the frame refuses too.
+            let prepared = technique.prepare(scene, &params, &self.job.cache, &|_| {});
+            let prepared = prepared.unwrap_or_default();
+            self.warnings.extend(prepared.iter().map(|w| w.to_string()));
             let trial = Trial {
-                scene: &self.job.frames[*frame],
-                technique: candidate.technique,
+                scene,
+                technique,
                 params: &params,
                 reference,
                 settings: RenderSettings {

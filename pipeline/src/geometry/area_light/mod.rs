@@ -56,7 +56,8 @@ pub enum AreaLight {
     Polygon {
         /// At least three, counter-clockwise seen from the lit side.
         corners: Vec<DVec3>,
-        /// Where hard shadow quads start: the mean of the corners.
+        /// Where hard shadow quads start: of a scene's polygon the centre of area, else the
+        /// mean of the corners.
         centre: DVec3,
         /// Unit, into the lit half-space.
         normal: DVec3,
@@ -123,7 +124,13 @@ impl AreaLight {
                 sized(centre, radius)?;
                 Ok(Self::Sphere { centre, radius })
             }
-            LightShape::Polygon(ref polygon) => Self::polygon(polygon.vertices().to_vec()),
+            LightShape::Polygon(ref polygon) => {
+                let mut light = Self::polygon(polygon.vertices().to_vec())?;
+                if let Self::Polygon { centre, .. } = &mut light {
+                    *centre = polygon.centroid();
+                }
+                Ok(light)
+            }
             LightShape::Point { .. } => Err(AreaLightError::NoArea("point")),
             LightShape::Directional { .. } => Err(AreaLightError::NoArea("directional")),
         }

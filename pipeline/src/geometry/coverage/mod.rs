@@ -19,8 +19,13 @@
 //! One predicate, [`umbra_side`], serves both w and s; were they to differ for a
 //! receiver on the quad, V would be wrong by 1.
 
+mod image;
+mod polygon;
 mod round;
 mod square;
+
+pub use image::{ImageSums, Spoke};
+pub use polygon::PolygonImage;
 
 use glam::{DVec2, DVec3};
 

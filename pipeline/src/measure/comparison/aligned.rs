@@ -23,6 +23,8 @@ pub struct Aligned {
     /// another surface that of the neighbour nearest in depth. 1 where the
     /// picture shows none.
     pub for_shading: Vec<f32>,
+    /// The same of green and blue, where the light has an image; else of all colours.
+    pub other_colours: Option<[Vec<f32>; 2]>,
 }
 
 impl Aligned {
@@ -60,6 +62,7 @@ impl Aligned {
         Ok(Self {
             left_out,
             for_shading: (0..expected).map(shade).collect(),
+            other_colours: None,
             truth,
         })
     }

@@ -16,6 +16,8 @@ pub(crate) struct GivenVisibility<'a> {
     pub(crate) light: usize,
     /// Of each pixel, rows from the top.
     pub(crate) values: &'a [f32],
+    /// Green and blue, where `values` are red alone.
+    pub(crate) others: Option<&'a [Vec<f32>; 2]>,
 }
 
 impl Technique for GivenVisibility<'_> {
@@ -48,13 +50,23 @@ impl Technique for GivenVisibility<'_> {
         };
         let mut frame = ShadowedFrame::new(scene, size, &settings)?.with_ambient();
         let [width, height] = size;
-        let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
+        let format = match self.others {
+            Some(_) => Format::Rgba32Float,
+            None => Format::R32Float,
+        };
+        let desc = TextureDescriptor::d2("visibility", format, width, height);
         let texture = frame.recording.create(&desc)?;
-        let texels: Vec<[f32; 4]> = self.values.iter().map(|v| [*v, 0.0, 0.0, 0.0]).collect();
+        let other = |colour: usize, k: usize| self.others.map_or(0.0, |all| all[colour][k]);
+        let values = self.values.iter().enumerate();
+        let texels = values.map(|(k, v)| [*v, other(0, k), other(1, k), 0.0]);
+        let texels: Vec<[f32; 4]> = texels.collect();
         frame
             .recording
             .write(texture, Subresource::default(), &texels)?;
-        let visibility = VisibilityTexture::red(texture);
+        let visibility = VisibilityTexture {
+            coloured: self.others.is_some(),
+            ..VisibilityTexture::red(texture)
+        };
         frame.lit(LitTest::Visibility(visibility), |_| Ok(Vec::new()))
     }
 }

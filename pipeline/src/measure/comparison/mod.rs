@@ -64,6 +64,9 @@ pub enum CompareError {
         /// Number of lights of the scene.
         count: usize,
     },
+    /// Shadow rays against an image on the light.
+    #[error("a light with an image has the reference 'exact' alone: shadow rays know no colors")]
+    ImageByRays,
     /// The light cannot be integrated over.
     #[error(transparent)]
     Light(#[from] LightError),

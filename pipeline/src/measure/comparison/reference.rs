@@ -13,6 +13,7 @@ use crate::truth::oracle::cache::{CacheWarning, Cached, OracleCache};
 use crate::truth::oracle::sampled::SampledOracle;
 use crate::truth::oracle::surfaces::Surfaces;
 use crate::world::light::LightShape;
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
 
 /// Side of the square of strata of [`ReferenceKind::Rays`]: 4096 rays a pixel.
@@ -82,6 +83,10 @@ pub struct Reference {
     pub origin: Origin,
     /// What went wrong with the cache.
     pub warnings: Vec<CacheWarning>,
+    /// What is on the light.
+    pub light_image: Option<LightImage>,
+    /// Green and blue of a light with an image, of which `image` is red.
+    others: Option<[VisibilityImage; 2]>,
     sight: Sight,
 }
 
@@ -100,29 +105,64 @@ impl Reference {
         cache: Option<&OracleCache>,
         row_done: &(dyn Fn() + Sync),
     ) -> Result<Self, CompareError> {
+        Self::with_light_image(scene, (light, None), size, kind, cache, row_done)
+    }
+
+    /// The same of a light with an image, if there is one: each colour is seen apart.
+    /// Without effect on lights that are no rectangles.
+    ///
+    /// # Errors
+    /// As [`Reference::new`]; shadow rays know no images.
+    pub fn with_light_image(
+        scene: &Scene,
+        (light, image): (usize, Option<&LightImage>),
+        size: [u32; 2],
+        kind: ReferenceKind,
+        cache: Option<&OracleCache>,
+        row_done: &(dyn Fn() + Sync),
+    ) -> Result<Self, CompareError> {
         let count = scene.lights.len();
         let Some(shape) = scene.lights.get(light).map(|l| &l.shape) else {
             let given = light;
             return Err(CompareError::NoSuchLight { given, count });
         };
         let surfaces = Surfaces::new(scene);
-        let mut found = match (kind, cache) {
-            (ReferenceKind::Exact, Some(cache)) => {
+        let image = image.filter(|_| matches!(shape, LightShape::Rectangle { .. }));
+        if image.is_some() && kind == ReferenceKind::Rays {
+            return Err(CompareError::ImageByRays);
+        }
+        let coloured = |image: &LightImage, colour: usize| match cache {
+            Some(cache) => cache.of_light_image(scene, light, (image, colour), size, row_done),
+            None => VisibilityImage::of_light_image(scene, light, (image, colour), size, row_done)
+                .map(computed),
+        };
+        let mut found = match (kind, cache, image) {
+            (_, _, Some(image)) => coloured(image, 0)?,
+            (ReferenceKind::Exact, Some(cache), _) => {
                 cache.visibility(scene, light, size, row_done)?
             }
-            (ReferenceKind::Rays, Some(cache)) => {
+            (ReferenceKind::Rays, Some(cache), _) => {
                 cache.sampled(scene, light, size, (RAYS_SIDE, RAYS_SEED), row_done)?
             }
-            (ReferenceKind::Exact, None) => {
+            (ReferenceKind::Exact, None, _) => {
                 computed(VisibilityImage::of_scene(scene, light, size, row_done)?)
             }
-            (ReferenceKind::Rays, None) => {
+            (ReferenceKind::Rays, None, _) => {
                 let oracle = SampledOracle::new(&surfaces, shape, RAYS_SIDE, RAYS_SEED)?;
                 computed(oracle.image(&surfaces, scene, size, row_done))
             }
         };
         let sight = Sight::new(scene, &surfaces, size);
         sight.light_what_takes_no_shadow(&mut found.image);
+        let others = match image {
+            Some(image) => {
+                let mut both = [coloured(image, 1)?.image, coloured(image, 2)?.image];
+                both.iter_mut()
+                    .for_each(|i| sight.light_what_takes_no_shadow(i));
+                Some(both)
+            }
+            None => None,
+        };
         Ok(Self {
             kind,
             light,
@@ -137,6 +177,8 @@ impl Reference {
                 Origin::Computed
             },
             warnings: found.warnings,
+            light_image: image.cloned(),
+            others,
             sight,
         })
     }
@@ -147,7 +189,12 @@ impl Reference {
     /// # Errors
     /// `depth` is of another size.
     pub fn under(&self, depth: &[f32]) -> Result<Aligned, MetricError> {
-        Aligned::new(&self.image, &self.sight, depth)
+        let mut aligned = Aligned::new(&self.image, &self.sight, depth)?;
+        if let Some([green, blue]) = &self.others {
+            let shading = |image| Ok(Aligned::new(image, &self.sight, depth)?.for_shading);
+            aligned.other_colours = Some([shading(green)?, shading(blue)?]);
+        }
+        Ok(aligned)
     }
 }
 

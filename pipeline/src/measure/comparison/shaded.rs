@@ -1,5 +1,7 @@
 //! The picture that the truth gives.
 
+use std::borrow::Cow;
+
 use super::{Aligned, Reference};
 use crate::measure::comparison::given_visibility::GivenVisibility;
 use crate::measure::render::{RenderError, RenderSettings, render};
@@ -21,7 +23,7 @@ impl ShadingKey {
     }
 }
 
-/// `scene` under the light of `reference` alone, dimmed by the truth and shaded
+/// `scene` under the light of `reference` alone, with the image that is on it, dimmed by the truth and shaded
 /// and stored as a technique with `params` does, so that pictures differ in
 /// visibility only: the sRGB picture, rows from the top. `under` is the truth
 /// under that technique's depth buffer.
@@ -38,10 +40,15 @@ pub fn shaded(
     let technique = GivenVisibility {
         light: reference.light,
         values: &under.for_shading,
+        others: under.other_colours.as_ref(),
     };
     let settings = RenderSettings {
         repeat: 1,
         ..*settings
     };
-    Ok(render(scene, &technique, params, &settings)?.srgb)
+    let scene = match &reference.light_image {
+        Some(image) => Cow::Owned(scene.with_light_image(image)),
+        None => Cow::Borrowed(scene),
+    };
+    Ok(render(&scene, &technique, params, &settings)?.srgb)
 }

@@ -8,7 +8,7 @@
 use gnomon_raster::{Gpu, RenderPass, Subresource, TextureId};
 
 use crate::measure::render::RenderError;
-use crate::technique::{Frame, VisibilityOutput};
+use crate::technique::Frame;
 
 /// For each pass whether its pixels are those of the frame.
 pub(super) fn screen_passes(gpu: &Gpu, frame: &Frame) -> Result<Vec<bool>, RenderError> {
@@ -43,9 +43,7 @@ impl<'a> Screen<'a> {
     fn of(gpu: &'a Gpu, frame: &Frame) -> Result<Self, RenderError> {
         let outputs = &frame.outputs;
         let mut textures = vec![outputs.color, outputs.depth_stencil];
-        if let VisibilityOutput::Red { texture, .. } = outputs.visibility {
-            textures.push(texture);
-        }
+        textures.extend(outputs.visibility.texture());
         let whole = |texture| (texture, Subresource::default());
         Ok(Self {
             gpu,

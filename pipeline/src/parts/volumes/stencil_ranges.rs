@@ -70,10 +70,18 @@ pub(crate) fn parts(examined: &Examined<'_>, whole: ShadowVolume, light: HardLig
 /// Items in groups, in order, of which each has at most 127 layers unless one item
 /// alone has more.
 pub(crate) fn groups<T>(items: impl IntoIterator<Item = (T, usize)>) -> Vec<Vec<T>> {
+    groups_within(RANGE, items)
+}
+
+/// The same with at most `most` layers.
+pub(crate) fn groups_within<T>(
+    most: usize,
+    items: impl IntoIterator<Item = (T, usize)>,
+) -> Vec<Vec<T>> {
     let (mut groups, mut used): (Vec<Vec<T>>, usize) = (Vec::new(), usize::MAX);
     for (item, layers) in items {
         match groups.last_mut() {
-            Some(group) if used + layers <= RANGE => {
+            Some(group) if used + layers <= most => {
                 group.push(item);
                 used += layers;
             }

@@ -1,14 +1,17 @@
 //! Textures that visibility is added up in, as floats or as 6 of 8 bits.
 
+use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{
     Format, LoadOp, Recording, RenderPass, RenderPipeline, TextureDescriptor, TextureId,
 };
-use gnomon_shaders::soft_volumes::Resolve;
+use gnomon_shaders::soft_volumes::{CoverTo, Resolve};
 use gnomon_shaders::transform::FullScreen;
+use gnomon_shaders::visibility_buffers::ResolveRedGreen;
 
-use super::{Buffer, SoftVolumesSettings};
-use crate::parts::visibility::{VisibilityTexture, attachment, binding, full_screen};
+use super::settings::{Buffer, SoftVolumesSettings};
+use crate::parts::passes::Targets;
+use crate::parts::visibility::{Positions, VisibilityTexture, attachment, binding, full_screen};
 use crate::technique::TechniqueError;
 
 /// Textures that coverage is added up in.
@@ -19,8 +22,17 @@ pub(super) struct Buffers {
     pub(super) visibility: TextureId,
     /// For copying back, of the same kind.
     pub(super) aside: Option<TextureId>,
-    /// Coverage to add and to take, 8 bits a channel.
-    pub(super) six_bits: Option<[TextureId; 2]>,
+    /// Coverage in 8 bits a channel.
+    bytes: Option<Bytes>,
+}
+
+/// Coverage in 8 bits.
+#[derive(Clone, Copy)]
+enum Bytes {
+    /// To add and to take, with counts in alpha.
+    Two([TextureId; 2]),
+    /// Both in red and green of one; counts are in the stencil.
+    One(TextureId),
 }
 
 impl Buffers {
@@ -32,8 +44,6 @@ impl Buffers {
         let mut create = |label: &str, format| {
             recording.create(&TextureDescriptor::d2(label, format, width, height))
         };
-        let bytes = settings.buffer == Buffer::Rgba8x2;
-        let aside = settings.copy_back;
         let coloured = settings.covering.image.is_some();
         let float = if coloured {
             Format::Rgba32Float
@@ -43,18 +53,18 @@ impl Buffers {
         Ok(Self {
             coloured,
             visibility: create("visibility", float)?,
-            aside: if aside {
+            aside: if settings.copy_back {
                 Some(create("visibility aside", float)?)
             } else {
                 None
             },
-            six_bits: if bytes {
-                Some([
+            bytes: match settings.buffer {
+                Buffer::R32f => None,
+                Buffer::Rgba8x2 => Some(Bytes::Two([
                     create("coverage added", Format::Rgba8Unorm)?,
                     create("coverage taken", Format::Rgba8Unorm)?,
-                ])
-            } else {
-                None
+                ])),
+                Buffer::Rgba8 => Some(Bytes::One(create("coverage", Format::Rgba8Unorm)?)),
             },
         })
     }
@@ -68,19 +78,40 @@ impl Buffers {
 
     /// Where coverage and counts are added.
     pub(super) fn targets(&self) -> Vec<TextureId> {
-        match self.six_bits {
-            Some(both) => both.to_vec(),
+        match self.bytes {
+            Some(Bytes::Two(both)) => both.to_vec(),
+            Some(Bytes::One(texture)) => vec![texture],
             None => vec![self.visibility],
         }
     }
 
+    /// What wedges write there.
+    pub(super) fn cover_to(&self) -> CoverTo {
+        match self.bytes {
+            Some(Bytes::Two(_)) => CoverTo::SixBits,
+            Some(Bytes::One(_)) => CoverTo::RedGreen,
+            None => CoverTo::Visibility,
+        }
+    }
+
     /// Visibility from 8-bit buffers.
-    pub(super) fn resolve_pass(&self, label: String) -> Option<RenderPass> {
-        let both = self.six_bits?;
+    pub(super) fn resolve_pass(
+        &self,
+        label: String,
+        targets: &Targets,
+        positions: Positions,
+    ) -> Option<RenderPass> {
+        let (shader, textures): (FragmentStage, Vec<TextureId>) = match self.bytes? {
+            Bytes::Two(both) => (Resolve::SixBits.stage(), both.to_vec()),
+            Bytes::One(texture) => (
+                ResolveRedGreen.stage(),
+                vec![texture, positions.texture, targets.depth_texture()],
+            ),
+        };
         let pipeline = RenderPipeline {
             label: label.clone(),
             vertex: FullScreen.stage(),
-            fragment: Some(Resolve::SixBits.stage()),
+            fragment: Some(shader),
             primitive: PrimitiveState::default(),
             depth_stencil: DepthStencilState::default(),
             color_targets: vec![ColorTargetState::OPAQUE],
@@ -89,7 +120,10 @@ impl Buffers {
             label,
             color: vec![attachment(self.visibility, LoadOp::DontCare)],
             depth_stencil: None,
-            draws: vec![full_screen(pipeline, both.map(binding).to_vec())],
+            draws: vec![full_screen(
+                pipeline,
+                textures.into_iter().map(binding).collect(),
+            )],
         })
     }
 }

@@ -11,15 +11,20 @@
 //!
 //! * Quads are counted by the side of eye and receiver, not by depth: count and
 //!   sign then share one predicate to the bit, and neither caps nor z-fail are
-//!   needed for an eye in shadow.
+//!   needed for an eye in shadow. `count=depth` and `buffer=rgba8` count as the paper.
+//! * Floats are blended, in one pass for all wedges; `copy-back=on` does without, as the
+//!   paper had to.
 //! * The receiver's position comes from an attachment of the ambient pass instead
 //!   of the depth buffer, whose 24 bits would be seen in the penumbra.
 //! * Wedges only choose pixels. The shader gives exactly 0 outside the penumbra,
 //!   so `wedge` and `skip` change counters and no bit.
 
 mod buffers;
+mod settings;
+mod umbra;
 mod volumes;
 
+use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
 use crate::parts::shadowed_frame::ShadowedFrame;
@@ -29,69 +34,18 @@ use crate::parts::wedges::soft::edges::SoftCasters;
 use crate::parts::wedges::soft::light::SoftLight;
 use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings, WEDGE};
 use crate::technique::{
-    Capabilities, Condition, Frame, Param, ParamInfo, Params, Pass, PassRole, SceneWedges,
-    ShadowKind, Technique, TechniqueError, WedgeUse,
+    Capabilities, Frame, ParamInfo, Params, Pass, PassRole, SceneWedges, ShadowKind, Technique,
+    TechniqueError, WedgeUse,
 };
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
-use crate::{choices, param_list};
 use buffers::Buffers;
+use settings::{BUFFER, COPY_BACK, COUNT, Count, SoftVolumesSettings};
+use umbra::Umbra;
 use volumes::LightVolumes;
 
 /// The registry's entry.
 pub(crate) struct SoftShadowVolumes;
-
-choices! {
-    /// What visibility is added up in.
-    enum Buffer {
-        /// A float.
-        R32f = "r32f",
-        /// 6 of 8 bits to add and to take.
-        Rgba8x2 = "rgba8x2",
-    }
-}
-
-const BUFFER: Param<Buffer> = Param::choice(
-    "buffer",
-    Buffer::R32f.word(),
-    "visibility in a float, or 6 of 8 bits to add and to take",
-);
-
-const COPY_BACK: Param<bool> = Param::switch(
-    "copy-back",
-    false,
-    "with r32f: no float blending, each wedge reads, writes aside and copies back",
-)
-.when(Condition::Is("buffer", &["r32f"]));
-
-/// What parameters decide.
-struct SoftVolumesSettings {
-    covering: CoveringSettings,
-    buffer: Buffer,
-    copy_back: bool,
-    soft: SoftSettings,
-}
-
-impl SoftVolumesSettings {
-    fn read(params: &Params) -> Result<Self, TechniqueError> {
-        let settings = Self {
-            covering: CoveringSettings::read(params)?,
-            buffer: params.get(&BUFFER)?,
-            copy_back: params.get(&COPY_BACK)?,
-            soft: SoftSettings::read(params)?,
-        };
-        if settings.copy_back && settings.buffer == Buffer::Rgba8x2 {
-            return Err(TechniqueError::Contradiction {
-                technique: params.technique(),
-                settings: [
-                    (BUFFER.info.name, settings.buffer.word().to_owned()),
-                    (COPY_BACK.info.name, "on".to_owned()),
-                ],
-                why: "8-bit buffers are blended; copying back stands in for the blending of floats",
-            });
-        }
-        Ok(settings)
-    }
-}
 
 impl Technique for SoftShadowVolumes {
     fn name(&self) -> &'static str {
@@ -99,14 +53,14 @@ impl Technique for SoftShadowVolumes {
     }
 
     fn summary(&self) -> &'static str {
-        "soft shadows of rectangles, discs and spheres by penumbra wedges (paper III)"
+        "soft shadows of rectangles, discs, spheres and polygons by penumbra wedges (paper III)"
     }
 
     fn params(&self) -> &'static [ParamInfo] {
         param_list!(
             &[WEDGE.info],
             CoveringSettings::PARAMS,
-            &[BUFFER.info, COPY_BACK.info],
+            &[BUFFER.info, COUNT.info, COPY_BACK.info],
             SoftSettings::PARAMS,
             FrameSettings::PARAMS
         )
@@ -129,6 +83,7 @@ impl Technique for SoftShadowVolumes {
         let settings = SoftVolumesSettings::read(params)?;
         let soft = settings.soft;
         let has_image = settings.covering.image.is_some();
+        let scene = &*settings.covering.lit(scene);
         let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
         let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
@@ -152,13 +107,29 @@ impl Technique for SoftShadowVolumes {
                 settings: &soft,
                 covering: coverings.of(self.name(), &light, number, covering, turn.recording)?,
             };
-            let mut passes = vec![volumes.count_pass(turn.label("quads"), &silhouettes)];
-            let (label, warnings) = (turn.label("wedges"), &mut turn.notes.warnings);
+            let umbra = Umbra {
+                view: turn.view(),
+                targets: turn.targets,
+                positions,
+                buffers: &buffers,
+                light: &light,
+                by_depth: settings.count == Count::Depth,
+            };
+            let (quads, label) = (turn.label("quads"), turn.label("wedges"));
+            let warnings = &mut turn.notes.warnings;
+            let mut passes = umbra.passes(&quads, &silhouettes);
             passes.extend(volumes.wedge_passes(&label, &silhouettes, warnings));
-            let resolve = buffers.resolve_pass(turn.label("resolve"));
+            passes.extend(umbra.stencil_pass(&quads, &silhouettes));
+            let layers = || casters.most_layers(light.centre);
+            warnings.extend(umbra.warning(&quads, layers));
+            let resolve = buffers.resolve_pass(turn.label("resolve"), turn.targets, positions);
             passes.extend(resolve.map(|pass| Pass::new(PassRole::Resolve, pass)));
             Ok(passes)
         })
+    }
+
+    fn light_image(&self, params: &Params) -> Result<Option<LightImage>, TechniqueError> {
+        Ok(CoveringSettings::read(params)?.light_image())
     }
 
     fn wedges(

@@ -3,13 +3,12 @@
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::ColorTargetState;
 use gnomon_raster::{Draw, LoadOp, RenderPass, TextureBinding, TextureId};
-use gnomon_shaders::soft_volumes::{CountTo, CoverTo, Resolve};
+use gnomon_shaders::soft_volumes::{CoverTo, Resolve};
 
 use super::buffers::Buffers;
 use crate::geometry::wedge::{Wedge, WedgeStatistics};
 use crate::parts::passes::{Targets, View};
 use crate::parts::visibility::{Positions, attachment, binding};
-use crate::parts::wedges::soft::count::Counting;
 use crate::parts::wedges::soft::covering::Covering;
 use crate::parts::wedges::soft::edges::Silhouettes;
 use crate::parts::wedges::soft::light::SoftLight;
@@ -31,33 +30,6 @@ pub(super) struct LightVolumes<'a> {
 }
 
 impl LightVolumes<'_> {
-    /// Pass 1: the hard shadow count.
-    pub(super) fn count_pass(&self, label: String, silhouettes: &Silhouettes) -> Pass {
-        let eight_bits = self.buffers.six_bits.is_some();
-        let to = if eight_bits {
-            CountTo::Alpha
-        } else {
-            CountTo::Visibility
-        };
-        let clear = if eight_bits { [0.0; 4] } else { [1.0; 4] };
-        let counting = Counting {
-            view: self.view,
-            positions: self.positions,
-            light: self.light,
-            to,
-        };
-        let targets = self.buffers.targets().into_iter();
-        let pass = RenderPass {
-            label,
-            color: targets
-                .map(|t| attachment(t, LoadOp::Clear(clear)))
-                .collect(),
-            depth_stencil: None,
-            draws: counting.draws(silhouettes),
-        };
-        Pass::new(PassRole::HardCount, pass)
-    }
-
     /// Pass 2: one wedge after the other; copying back, two passes for each.
     pub(super) fn wedge_passes(
         &mut self,
@@ -89,7 +61,11 @@ impl LightVolumes<'_> {
         }
         warnings.extend(warnings_of(label, &statistics, &areas));
         if self.buffers.aside.is_none() {
-            passes.push(self.pass(label, self.buffers.targets(), LoadOp::Load, draws));
+            let load = match self.buffers.cover_to() {
+                CoverTo::RedGreen => LoadOp::Clear([0.0; 4]),
+                _ => LoadOp::Load,
+            };
+            passes.push(self.pass(label, self.buffers.targets(), load, draws));
         }
         passes
     }
@@ -101,10 +77,15 @@ impl LightVolumes<'_> {
         load: LoadOp<[f32; 4]>,
         draws: Vec<(Draw, DrawRole)>,
     ) -> Pass {
+        // A light before this one may have left its count there.
+        let stencil = match self.buffers.cover_to() {
+            CoverTo::RedGreen => LoadOp::Clear(0),
+            _ => LoadOp::Load,
+        };
         let pass = RenderPass {
             label: label.to_owned(),
             color: targets.into_iter().map(|t| attachment(t, load)).collect(),
-            depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            depth_stencil: self.targets.depth_stencil(LoadOp::Load, stencil),
             draws: Vec::new(),
         };
         Pass::with_draws(PassRole::Wedges, pass, draws)
@@ -115,14 +96,9 @@ impl LightVolumes<'_> {
         area: &WedgeArea,
         shader: impl Fn(CoverTo) -> FragmentStage,
     ) -> Vec<(Draw, DrawRole)> {
-        let to = if self.buffers.six_bits.is_some() {
-            CoverTo::SixBits
-        } else {
-            CoverTo::Visibility
-        };
         let pipeline = WedgePipeline {
             label: "penumbra",
-            fragment: shader(to),
+            fragment: shader(self.buffers.cover_to()),
             targets: vec![ColorTargetState::ADDITIVE; self.buffers.targets().len()],
             textures: self.bindings(self.positions.texture),
             skip: self.settings.skip,
@@ -170,7 +146,7 @@ impl LightVolumes<'_> {
     /// Positions, `second`, and the coverage table where there is one.
     fn bindings(&self, second: TextureId) -> Vec<TextureBinding> {
         let mut slots = vec![binding(self.positions.texture), binding(second)];
-        slots.extend(self.covering.texture().map(binding));
+        slots.extend(self.covering.textures().map(binding));
         slots
     }
 }

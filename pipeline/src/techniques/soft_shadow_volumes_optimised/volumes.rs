@@ -1,27 +1,47 @@
 //! Quads and wedges of one part of a light as passes.
 
+use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::ColorTargetState;
 use gnomon_raster::{Draw, LoadOp, RenderPass, TextureId};
-use gnomon_shaders::soft_volumes::{CountTo, HardPlane};
-use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
+use gnomon_shaders::coverage::Edge;
+use gnomon_shaders::soft_volumes::HardPlane;
+use gnomon_shaders::split_volumes::{Halves, SplitPenumbra};
 
-use super::buffers::Buffers;
+use super::lookups::Covered;
+
 use crate::geometry::wedge::{Wedge, WedgeStatistics};
 use crate::parts::passes::{Targets, View};
 use crate::parts::visibility::{Positions, attachment, binding};
-use crate::parts::wedges::soft::count::Counting;
 use crate::parts::wedges::soft::edges::Silhouettes;
 use crate::parts::wedges::soft::halves::Half;
 use crate::parts::wedges::soft::light::{LightSide, SoftLight};
 use crate::parts::wedges::soft::settings::SoftSettings;
+use crate::parts::wedges::soft::stencil_count::StencilCounting;
 use crate::parts::wedges::soft::wedges::{AreaStatistics, Note, WedgeArea, WedgePipeline};
-use crate::technique::{DrawRole, Pass, PassRole};
+use crate::technique::{DrawRole, Pass, PassRole, Warning};
 
 /// What became of the wedges of all parts of a light.
 #[derive(Default)]
 pub(super) struct PartStatistics {
     pub(super) wedges: WedgeStatistics,
     pub(super) areas: AreaStatistics,
+    /// Loops round holes that are combined, at most of any part.
+    pub(super) holes: u64,
+}
+
+impl PartStatistics {
+    /// Says that holes are filled, if some are.
+    pub(super) fn hole_warning(&self, label: &str) -> Option<Warning> {
+        (self.holes != 0).then(|| Warning {
+            code: "loops-round-holes",
+            count: self.holes as usize,
+            message: format!(
+                "{label}: {} silhouette loops run round holes, which combine-over=loop fills; \
+                 combine-over=outline keeps them",
+                self.holes
+            ),
+        })
+    }
 }
 
 /// Quads and wedges of one part of a light.
@@ -29,8 +49,9 @@ pub(super) struct PartVolumes<'a> {
     pub(super) view: &'a View,
     pub(super) targets: &'a Targets,
     pub(super) positions: Positions,
-    pub(super) buffers: &'a Buffers,
-    pub(super) tables: Option<(Tables, [TextureId; 3])>,
+    /// The additive and the subtractive buffer of each colour.
+    pub(super) split: Vec<[TextureId; 2]>,
+    pub(super) covered: Covered,
     pub(super) light: &'a SoftLight,
     pub(super) settings: &'a SoftSettings,
     /// Draw halves of wedges apart.
@@ -39,16 +60,16 @@ pub(super) struct PartVolumes<'a> {
 
 impl PartVolumes<'_> {
     pub(super) fn count_pass(&self, label: String, group: &Silhouettes) -> Pass {
-        let counting = Counting {
+        let counting = StencilCounting {
             view: self.view,
             positions: self.positions,
             light: self.light,
-            to: CountTo::Visibility,
+            skip: self.settings.skip,
         };
         let pass = RenderPass {
             label,
-            color: vec![attachment(self.buffers.hard, LoadOp::Clear([1.0; 4]))],
-            depth_stencil: None,
+            color: Vec::new(),
+            depth_stencil: self.targets.depth_stencil(LoadOp::Load, LoadOp::Clear(0)),
             draws: counting.draws(group),
         };
         Pass::new(PassRole::HardCount, pass)
@@ -61,26 +82,32 @@ impl PartVolumes<'_> {
         group: &Silhouettes,
         statistics: &mut PartStatistics,
     ) -> Vec<Pass> {
-        let [added, taken] = self.buffers.split;
         // A light without extent has no wedges to halve.
-        if !self.halves || self.light.sides.is_empty() {
+        let halves = self.halves && !self.light.sides.is_empty();
+        if let (false, [both]) = (halves, &self.split[..]) {
             let to = WedgeTarget {
-                buffers: vec![added, taken],
+                buffers: both.to_vec(),
                 half: None,
+                halves: Halves::Both,
             };
             return vec![self.wedge_pass(label, group, &to, statistics)];
         }
-        let of = |half, buffer| WedgeTarget {
-            buffers: vec![buffer],
-            half: Some(half),
+        let of = |half, halves_of, k: usize| WedgeTarget {
+            buffers: self.split.iter().map(|pair| pair[k]).collect(),
+            half: halves.then_some(half),
+            halves: halves_of,
         };
-        let inner = self.wedge_pass(label, group, &of(Half::Inner, added), statistics);
+        let [inner, outer] = [
+            of(Half::Inner, Halves::Inner, 0),
+            of(Half::Outer, Halves::Outer, 1),
+        ];
+        let inner = self.wedge_pass(label, group, &inner, statistics);
         // The edges are the same; they are counted once.
         let mut of_outer = PartStatistics {
             areas: statistics.areas,
             ..PartStatistics::default()
         };
-        let outer = self.wedge_pass(label, group, &of(Half::Outer, taken), &mut of_outer);
+        let outer = self.wedge_pass(label, group, &outer, &mut of_outer);
         statistics.areas = of_outer.areas;
         vec![inner, outer]
     }
@@ -127,22 +154,11 @@ impl PartVolumes<'_> {
         area: &WedgeArea,
         to: &WedgeTarget,
     ) -> Vec<(Draw, DrawRole)> {
-        let shader = SplitPenumbra {
-            light: side.projector,
-            edge: side.edge(part.edge),
-            plane,
-            tables: self.tables.map(|(tables, _)| tables).unwrap_or_default(),
-            halves: match to.half {
-                None => Halves::Both,
-                Some(Half::Inner) => Halves::Inner,
-                Some(Half::Outer) => Halves::Outer,
-            },
-        };
-        let lookups = self.tables.iter().flat_map(|(_, textures)| textures);
-        let textures = [self.positions.texture].into_iter().chain(lookups.copied());
+        let (fragment, lookups) = self.shader(side, side.edge(part.edge), plane, to);
+        let textures = [self.positions.texture].into_iter().chain(lookups);
         let pipeline = WedgePipeline {
             label: "penumbra",
-            fragment: shader.stage(),
+            fragment,
             targets: vec![ColorTargetState::ADDITIVE; to.buffers.len()],
             textures: textures.map(binding).collect(),
             skip: self.settings.skip,
@@ -151,6 +167,37 @@ impl PartVolumes<'_> {
         };
         area.draws(self.view, pipeline)
     }
+
+    /// The shader of an edge, and the textures that it reads behind positions.
+    fn shader(
+        &self,
+        side: &LightSide,
+        edge: Edge,
+        plane: HardPlane,
+        to: &WedgeTarget,
+    ) -> (FragmentStage, Vec<TextureId>) {
+        let (light, halves) = (side.projector, to.halves);
+        match self.covered {
+            Covered::Split(tables) => {
+                let shader = SplitPenumbra {
+                    light,
+                    edge,
+                    plane,
+                    tables: tables.map(|(tables, _)| tables).unwrap_or_default(),
+                    halves,
+                };
+                let textures = tables.iter().flat_map(|(_, textures)| *textures);
+                (shader.stage(), textures.collect())
+            }
+            Covered::Textured(covering) => {
+                let colors = self.split.len() as u32;
+                let shader = covering.split_shader(side, edge, plane, halves, colors);
+                // In the second slot something that is not read.
+                let textures = [self.positions.texture].into_iter();
+                (shader, textures.chain(covering.textures()).collect())
+            }
+        }
+    }
 }
 
 /// Where wedges are drawn to, and what of them.
@@ -158,4 +205,6 @@ struct WedgeTarget {
     buffers: Vec<TextureId>,
     /// Whole wedges where there is none.
     half: Option<Half>,
+    /// What fragments are for these buffers.
+    halves: Halves,
 }

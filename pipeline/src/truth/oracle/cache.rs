@@ -3,7 +3,8 @@
 //! The name of a file is a BLAKE3 hash of everything that decides the image:
 //! geometry to the bit, who casts, the light's shape, the camera, the size and
 //! [`super::area::ORACLE_VERSION`], for images by shadow rays also their number,
-//! their seed and [`super::sampled::SAMPLED_VERSION`]. Names, materials and colours do not. A file is
+//! their seed and [`super::sampled::SAMPLED_VERSION`], for an image on the light its
+//! texels and the colour. Names, materials and colours do not. A file is
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -35,6 +36,7 @@ use super::surfaces::Surfaces;
 use crate::world::error::LightError;
 use crate::world::files::{self, FileError};
 use crate::world::light::LightShape;
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
 use key::Key;
 pub use transport::CachedTransport;
@@ -133,6 +135,27 @@ impl OracleCache {
             let surfaces = Surfaces::new(scene);
             let oracle = SampledOracle::new(&surfaces, shape, rays.0, rays.1)?;
             Ok(oracle.image(&surfaces, scene, size, row_done))
+        })
+    }
+
+    /// The same of one colour, 0 for red, of an image on the light, a rectangle.
+    ///
+    /// # Errors
+    /// As [`OracleCache::visibility`].
+    ///
+    /// # Panics
+    /// There is no such light.
+    pub fn of_light_image(
+        &self,
+        scene: &Scene,
+        light: usize,
+        of: (&LightImage, usize),
+        size: [u32; 2],
+        row_done: &(dyn Fn() + Sync),
+    ) -> Result<Cached, LightError> {
+        let key = Key::of_light_image(scene, &scene.lights[light].shape, size, of);
+        self.image(&key, size, || {
+            VisibilityImage::of_light_image(scene, light, of, size, row_done)
         })
     }
 

@@ -48,6 +48,7 @@ pub use cube::CubeMap;
 pub use error::EnvironmentError;
 pub use fit::{AreaFit, Fit, FitSettings, LightForm, ResidualRule};
 pub use placed::{DISTANCE, PlacedEnvironment};
+pub(in crate::world) use read::decode;
 
 use crate::world::files::SceneFolder;
 use crate::world::warning::SceneWarning;

@@ -60,15 +60,30 @@ fn file(path: &Path, within: Option<&SceneFolder>) -> Result<Read, EnvironmentEr
     };
     let bytes = bytes.map_err(|e| unreadable(&name, e))?;
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
-    let decoded = if bytes.starts_with(hdr::MAGIC) {
-        hdr::decode(bytes)
-    } else if bytes.starts_with(exr::MAGIC) {
-        exr::decode(bytes)
-    } else {
-        return Err(EnvironmentError::UnknownKind { name });
-    };
-    decoded.map_err(|why| EnvironmentError::Unreadable { name, why })
+    match decoded(bytes) {
+        Some(read) => read.map_err(|why| EnvironmentError::Unreadable { name, why }),
+        None => Err(EnvironmentError::UnknownKind { name }),
+    }
 }
+
+/// What a Radiance or OpenEXR file holds; `None` for files of other kinds.
+fn decoded(bytes: &[u8]) -> Option<Result<Read, String>> {
+    if bytes.starts_with(hdr::MAGIC) {
+        Some(hdr::decode(bytes))
+    } else if bytes.starts_with(exr::MAGIC) {
+        Some(exr::decode(bytes))
+    } else {
+        None
+    }
+}
+
+/// Size and texels, rows from the top, of a picture that is no map.
+pub(in crate::world) fn decode(bytes: &[u8]) -> Option<Result<DecodedPicture, String>> {
+    Some(decoded(bytes)?.map(|read| (read.size, read.texels)))
+}
+
+/// Width and height, and linear texels in rows from the top.
+pub(in crate::world) type DecodedPicture = ([usize; 2], Vec<[f32; 3]>);
 
 /// The six faces below each other.
 fn six(folder: &Path, name: &str, within: Option<&SceneFolder>) -> Result<Read, EnvironmentError> {

@@ -27,7 +27,8 @@ pub use crate::world::material::{Material, MaterialPart};
 pub use crate::world::warning::SceneWarning;
 
 use crate::world::environment::PlacedEnvironment;
-use crate::world::light::Light;
+use crate::world::light::{Light, LightShape};
+use crate::world::light_image::LightImage;
 use crate::world::mesh::Mesh;
 
 /// A complete scene: everything in world space, nothing left to look up.
@@ -72,6 +73,20 @@ impl Scene {
     /// Objects that cast shadows, in drawing order.
     pub fn casters(&self) -> impl Iterator<Item = &Object> {
         self.objects.iter().filter(|o| o.casts)
+    }
+
+    /// The same with the colours of its rectangles multiplied by those of an image that
+    /// they have.
+    #[must_use]
+    pub fn with_light_image(&self, image: &LightImage) -> Self {
+        let mut scene = self.clone();
+        let means = image.means();
+        for light in &mut scene.lights {
+            if matches!(light.shape, LightShape::Rectangle { .. }) {
+                light.colour = [0, 1, 2].map(|c| light.colour[c] * means[c] as f32);
+            }
+        }
+        scene
     }
 
     /// Triangles of all objects.

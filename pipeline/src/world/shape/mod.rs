@@ -15,6 +15,7 @@ mod plane;
 mod statue;
 mod terrain;
 mod torus_knot;
+mod tube;
 
 pub use bevelled_plate::{bevelled_plate, bevelled_plate_in_pieces};
 pub use capsule::capsule;
@@ -27,6 +28,7 @@ pub use plane::plane;
 pub use statue::statue;
 pub use terrain::{Terrain, terrain};
 pub use torus_knot::torus_knot;
+pub use tube::tube;
 
 use glam::{DMat4, DVec3};
 

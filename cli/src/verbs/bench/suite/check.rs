@@ -4,10 +4,10 @@ use std::fmt::{self, Write};
 use std::path::Path;
 
 use gnomon_pipeline::measure::comparison::{CompareError, ReferenceKind};
-use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
+use super::entry::Entry;
 use super::grid;
 use super::request::{Given, Request};
 use crate::error::CliError;
@@ -32,14 +32,6 @@ pub(crate) struct Subject {
     pub(crate) scene: Scene,
     /// Of everything in the scene but its name.
     pub(crate) hash: String,
-}
-
-/// A technique with parameters.
-pub(crate) struct Entry {
-    pub(crate) technique: &'static dyn Technique,
-    pub(crate) params: Params,
-    /// Those that are not at their defaults.
-    pub(crate) settings: Vec<(String, String)>,
 }
 
 /// Most cells of a suite.

@@ -227,7 +227,7 @@ mod tests {
             ("sizes = []", ["s.toml:3: ", "`sizes` is empty"]),
             ("threads = [1,\n 5000]", ["s.toml:4: ", "5000"]),
             ("scene = 1", ["s.toml:3: ", "scene"]),
-            ("repeat = \"x\"", ["s.toml:3: ", "integer"]),
+            ("repeat = \"x\"", ["s.toml:3: ", "\"x\""]),
             ("time = nan", ["s.toml:3: ", "finite"]),
             ("reference = \"truth\"", ["s.toml:3: ", "exact, rays"]),
             ("light = [", ["s.toml:", "array"]),

@@ -1,21 +1,16 @@
 //! A technique and a grid over its parameters: `pcf:taps=2|4|8:map-size=256|512`.
 
-use gnomon_pipeline::technique::{Domain, ParamInfo, Params, Technique, TechniqueError};
+use gnomon_pipeline::technique::TechniqueError;
 use gnomon_pipeline::techniques::Registry;
 
-use super::check::Entry;
+use super::entry::{Entry, LIGHT, Settings, entry};
 use super::request::Given;
 use crate::error::CliError;
 
-/// The parameter by which techniques choose lights.
-const LIGHT: &str = "light";
 /// What stands for every technique at its defaults.
 const ALL: &str = "all";
 /// Most points of one grid.
 const MOST_POINTS: usize = 4096;
-
-/// Keys and values.
-type Settings = Vec<(String, String)>;
 
 /// Every point of the grid that `given` writes, under light number `light`.
 pub(super) fn expand(
@@ -98,45 +93,6 @@ fn product(
         points = points.iter().flat_map(with).collect();
     }
     Ok(points)
-}
-
-/// The technique with `given` settings under light number `light`.
-pub(super) fn entry(
-    technique: &'static dyn Technique,
-    given: &[(String, String)],
-    light: usize,
-) -> Result<Entry, TechniqueError> {
-    let written = given.iter().map(|(k, v)| format!("{k}={v}"));
-    let params = Params::parse(technique, written)?;
-    let settings: Settings = technique
-        .params()
-        .iter()
-        .filter_map(|info| changed(info, &params))
-        .collect();
-    let has_lights = technique.params().iter().any(|p| p.name == LIGHT);
-    let light = has_lights.then(|| format!("{LIGHT}={light}"));
-    let plain = settings.iter().map(|(k, v)| format!("{k}={v}"));
-    let params = Params::parse(technique, light.into_iter().chain(plain))?;
-    Ok(Entry {
-        technique,
-        params,
-        settings,
-    })
-}
-
-/// A parameter that is not at its default, its value in one writing.
-fn changed(info: &ParamInfo, params: &Params) -> Option<(String, String)> {
-    let text = params.text(info.name)?;
-    if info.domain.same(text, &info.default.to_string()) {
-        return None;
-    }
-    let number = match info.domain {
-        Domain::Whole { .. } => text.parse::<u64>().ok().map(|n| n.to_string()),
-        Domain::Decimal { .. } => text.parse::<f64>().ok().map(|x| x.to_string()),
-        _ => None,
-    };
-    let text = number.unwrap_or_else(|| text.to_owned());
-    Some((info.name.to_owned(), text))
 }
 
 #[cfg(test)]

@@ -44,13 +44,7 @@ impl Counting<'_> {
             return Vec::new();
         }
         let draw = |label, cull_mode, entered: f32| {
-            // No normal, so that nothing is on an umbra side: only the count.
-            let corners = near_cap::corners(self.view, caps);
-            let data = corners.flat_map(|p| p.into_iter().chain([0.0, 0.0, 0.0, -entered]));
-            let vertices = VertexBuffer {
-                data: data.collect(),
-                stride: 8,
-            };
+            let vertices = near_cap_vertices(self.view, caps, entered);
             let primitive = PrimitiveState {
                 cull_mode,
                 ..near_cap::primitive()
@@ -87,6 +81,7 @@ impl Counting<'_> {
         let targets = match self.to {
             CountTo::Visibility => 1,
             CountTo::Alpha => 2,
+            CountTo::Stencil => 0,
         };
         let shader = HardCount {
             origin: self.light.shader_origin(self.view),
@@ -103,40 +98,60 @@ impl Counting<'_> {
     }
 
     fn quads(&self, edges: &[SoftEdge]) -> Option<Draw> {
-        let offsets = self.light.is_far();
-        let stride = if offsets { 9 } else { 8 };
-        let mut data = Vec::new();
-        let mut indices = Vec::new();
-        for edge in edges.iter().filter(|e| e.has_plane()) {
-            let first = (data.len() / stride) as u32;
-            let [e0, e1] = edge.ends.map(|e| self.view.relative(e).extend(1.0));
-            let [d0, d1] = edge.away(self.light.centre).map(|d| d.extend(0.0));
-            for v in [e0, e1, d0, d1] {
-                data.extend(DVec4::to_array(&v).map(|c| c as f32));
-                data.extend(edge.normal);
-                data.push(if edge.eye_inside { 1.0 } else { 0.0 });
-                data.extend(offsets.then(|| self.light.plane(edge).offset));
-            }
-            indices.extend([1, 0, 2, 1, 2, 3].map(|i| first + i));
-        }
-        if indices.is_empty() {
-            return None;
-        }
+        let (vertices, indices) = quads_of(self.view, self.light, edges)?;
         let vertex = HardQuads {
             clip_from_world: self.view.clip_from_world,
-            offsets,
+            offsets: self.light.is_far(),
         };
         let vertex = vertex.stage();
         let pipeline = self.pipeline("quads", vertex, passes::clamped());
-        let vertices = VertexBuffer { data, stride };
         Some(Draw {
             textures: vec![binding(self.positions.texture)],
             ..Draw::indexed(
                 "quads",
                 &Arc::new(pipeline),
                 &Arc::new(vertices),
-                &Arc::new(IndexBuffer::new(indices)),
+                &Arc::new(indices),
             )
         })
     }
+}
+
+/// Corners of triangles for [`HardQuads`] with [`near_cap::clip_from_world`]; those that
+/// face the eye count `entered`. They have no normal, so that nothing is on an umbra
+/// side.
+pub(super) fn near_cap_vertices(view: &View, caps: &[CapTriangle], entered: f32) -> VertexBuffer {
+    let corners = near_cap::corners(view, caps);
+    let data = corners.flat_map(|p| p.into_iter().chain([0.0, 0.0, 0.0, -entered]));
+    VertexBuffer {
+        data: data.collect(),
+        stride: 8,
+    }
+}
+
+/// Vertices and indices of the hard shadow quads of edges, for [`HardQuads`] with
+/// offsets where the light is far; `None` without any.
+pub(super) fn quads_of<'e>(
+    view: &View,
+    light: &SoftLight,
+    edges: impl IntoIterator<Item = &'e SoftEdge>,
+) -> Option<(VertexBuffer, IndexBuffer)> {
+    let offsets = light.is_far();
+    let stride = if offsets { 9 } else { 8 };
+    let mut data = Vec::new();
+    let mut indices = Vec::new();
+    for edge in edges.into_iter().filter(|e| e.has_plane()) {
+        let first = (data.len() / stride) as u32;
+        let [e0, e1] = edge.ends.map(|e| view.relative(e).extend(1.0));
+        let [d0, d1] = edge.away(light.centre).map(|d| d.extend(0.0));
+        for v in [e0, e1, d0, d1] {
+            data.extend(DVec4::to_array(&v).map(|c| c as f32));
+            data.extend(edge.normal);
+            data.push(if edge.eye_inside { 1.0 } else { 0.0 });
+            data.extend(offsets.then(|| light.plane(edge).offset));
+        }
+        indices.extend([1, 0, 2, 1, 2, 3].map(|i| first + i));
+    }
+    let vertices = VertexBuffer { data, stride };
+    (!indices.is_empty()).then(|| (vertices, IndexBuffer::new(indices)))
 }

@@ -1,17 +1,24 @@
 //! How the coverage of an edge is found: in closed form, or from the 4D texture of
-//! paper III (§3.2.3), and the parameters that say so.
+//! paper III (§3.3), and the parameters that say so.
+
+use std::borrow::Cow;
 
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::{Recording, TextureId};
 use gnomon_shaders::coverage::{Edge, Image};
-use gnomon_shaders::coverage_table::CoverageTable;
+use gnomon_shaders::coverage_table::{BlendedTables, CoverageTable};
 use gnomon_shaders::soft_volumes::{CoverTo, ExactCoverage, HardPlane, Penumbra};
+use gnomon_shaders::split_volumes::textured::SplitTextured;
+use gnomon_shaders::split_volumes::{Halves, SplitPenumbra, Tables};
 
 use super::light::{LightSide, SoftLight};
-use super::light_image::LightImage;
 use super::table::{self, Contents};
 use crate::choices;
-use crate::technique::{Condition, LightFact, Param, ParamInfo, Params, TechniqueError};
+use crate::technique::{
+    Condition, LIGHT_FRAME, LightFact, Param, ParamInfo, Params, TechniqueError,
+};
+use crate::world::light_image::{LightImage, LightMoment, LightSequence};
+use crate::world::scene::Scene;
 
 choices! {
     /// How the coverage of an edge is found.
@@ -40,20 +47,6 @@ choices! {
         Cell = "cell",
         /// Up to the border.
         Vertex = "vertex",
-    }
-}
-
-choices! {
-    /// Colours on a rectangle.
-    enum ImageName {
-        /// One.
-        White = "white",
-        /// Two.
-        Halves = "halves",
-        /// Sixteen lights.
-        Windows = "windows",
-        /// A fire.
-        Fire = "fire",
     }
 }
 
@@ -90,7 +83,9 @@ const TEXTURE_SIZE: Param<u32> = Param::<u32>::whole(
 const TEXTURE_FILTER: Param<TextureFilter> = Param::choice(
     "texture-filter",
     TextureFilter::Nearest.word(),
-    "how the 4D texture is read",
+    "how the 4D texture is read: the nearest entry as the paper, or between sixteen, off the light's \
+     center; under images of sharp contrast both err where an edge passes the center, and more \
+     entries help",
 )
 .when(WITH_TEXTURE);
 
@@ -101,21 +96,48 @@ const TEXTURE_CENTRED: Param<TextureCentred> = Param::choice(
 )
 .when(WITH_TEXTURE);
 
-const LIGHT_IMAGE: Param<ImageName> = Param::choice(
+/// Names of built-in images.
+const IMAGES: &[&str] = &["white", "halves", "windows", "fire"];
+
+choices! {
+    /// What a coloured texture holds.
+    enum TextureBits {
+        /// Half floats.
+        Sixteen = "16",
+        /// Bytes.
+        Eight = "8",
+    }
+}
+
+const TEXTURE_BITS: Param<TextureBits> = Param::choice(
+    "texture-bits",
+    TextureBits::Sixteen.word(),
+    "bits of a color in the 4D texture of an image: half floats, or 8 as the paper's; without an \
+     image they are 8",
+)
+.unit("bits")
+.when(Condition::All(&[
+    EXTENDED,
+    Condition::Not("light-image", &["white"]),
+]));
+
+const LIGHT_IMAGE: Param<LightSequence> = Param::images(
+    IMAGES,
     "light-image",
-    ImageName::White.word(),
-    "colours on a rectangle, by a coloured 4D texture: two, sixteen lights, a fire",
+    "colors on rectangles, by colored 4D textures: two, sixteen lights, a fire, or PNG, EXR and \
+     HDR files of 2x2 to 32x32 texels, a frame each with --frames",
 );
 
-const LIGHT_FRAME: Param<u32> = Param::<u32>::whole(
-    "light-frame",
-    0,
-    [0, u32::MAX as u64],
-    "number of the fire's frame; each has a 4D texture of its own",
+const FRAME: Param<f64> = Param::decimal(
+    LIGHT_FRAME,
+    0.0,
+    0.0,
+    "number of the image that is shown, of a fire or of files, from the first again after the \
+     last; between two numbers their 4D textures are blended",
 )
 .when(Condition::All(&[
     EXTENDED,
-    Condition::Is("light-image", &["fire"]),
+    Condition::Not("light-image", &["white", "halves", "windows"]),
 ]));
 
 /// How the coverage of edges is found.
@@ -124,7 +146,7 @@ pub(crate) struct CoveringSettings {
     backend: Backend,
     table: CoverageTable,
     /// The colours on the light, where they are not one.
-    pub(crate) image: Option<LightImage>,
+    pub(crate) image: Option<LightMoment>,
 }
 
 impl CoveringSettings {
@@ -133,42 +155,66 @@ impl CoveringSettings {
         TEXTURE_SIZE.info,
         TEXTURE_FILTER.info,
         TEXTURE_CENTRED.info,
+        TEXTURE_BITS.info,
         LIGHT_IMAGE.info,
-        LIGHT_FRAME.info,
+        FRAME.info,
     ];
 
     /// # Errors
     /// `backend=exact` is asked for together with an image.
     pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
-        let (backend, name) = (params.get(&BACKEND)?, params.get(&LIGHT_IMAGE)?);
-        let frame = params.get(&LIGHT_FRAME)?;
-        let image = match name {
-            ImageName::White => None,
-            ImageName::Halves => Some(LightImage::halves()),
-            ImageName::Windows => Some(LightImage::windows()),
-            ImageName::Fire => Some(LightImage::fire(frame)),
-        };
+        let backend = params.get(&BACKEND)?;
+        let image = sequence(params)?;
         let asked = params.is_given(BACKEND.info.name) && backend == Backend::Exact;
         if asked && image.is_some() {
+            let name = params.text(LIGHT_IMAGE.info.name).unwrap_or_default();
             return Err(TechniqueError::Contradiction {
                 technique: params.technique(),
                 settings: [
                     (BACKEND.info.name, backend.word().to_owned()),
-                    (LIGHT_IMAGE.info.name, name.word().to_owned()),
+                    (LIGHT_IMAGE.info.name, name.to_owned()),
                 ],
                 why: "coverage of an image is looked up in a 4D texture",
             });
         }
+        let frame = params.get(&FRAME)?;
         Ok(Self {
             backend,
             table: CoverageTable {
                 size: params.get(&TEXTURE_SIZE)?,
                 linear: params.get(&TEXTURE_FILTER)? == TextureFilter::Quadlinear,
                 vertex_centred: params.get(&TEXTURE_CENTRED)? == TextureCentred::Vertex,
+                whole: image.is_some() && params.get(&TEXTURE_BITS)? == TextureBits::Eight,
             },
-            image,
+            image: image.map(|sequence| sequence.at(frame)),
         })
     }
+
+    /// The image that lights have, and the truth with them; of two the blend.
+    pub(crate) fn light_image(&self) -> Option<LightImage> {
+        self.image.as_ref().map(LightMoment::blended)
+    }
+
+    /// `scene`, its lights in the colours of their image.
+    pub(crate) fn lit<'a>(&self, scene: &'a Scene) -> Cow<'a, Scene> {
+        match self.light_image() {
+            Some(image) => Cow::Owned(scene.with_light_image(&image)),
+            None => Cow::Borrowed(scene),
+        }
+    }
+}
+
+/// The images that parameters ask for.
+fn sequence(params: &Params) -> Result<Option<LightSequence>, TechniqueError> {
+    let one = |image: LightImage| LightSequence::Images([image].into());
+    let built_in = match params.text(LIGHT_IMAGE.info.name) {
+        Some("halves") => Some(one(LightImage::halves())),
+        Some("windows") => Some(one(LightImage::windows())),
+        Some("fire") => Some(LightSequence::Fire),
+        _ => None,
+    };
+    let read = params.images(&LIGHT_IMAGE)?;
+    Ok(built_in.or_else(|| read.cloned()))
 }
 
 /// How coverage is found.
@@ -176,6 +222,8 @@ impl CoveringSettings {
 pub(crate) enum Covering {
     Exact,
     Table(CoverageTable, TextureId),
+    /// Between two images of a light.
+    Blended(BlendedTables, [TextureId; 2]),
 }
 
 /// Coverings of the lights of a frame. Lights of one shape share a texture: it
@@ -212,33 +260,45 @@ impl Covering {
         settings: &CoveringSettings,
         recording: &mut Recording,
     ) -> Result<Self, TechniqueError> {
-        let image = settings.image.clone();
+        let image = settings.image.as_ref();
         let wanted = settings.backend == Backend::Texture4d || image.is_some();
         let Some(side) = light.sides.first().filter(|_| wanted) else {
             return Ok(Self::Exact);
         };
-        let contents = match (image, side.projector.image()) {
-            (Some(image), Image::Square) => Contents::Coloured(image),
-            (Some(_), Image::Disc) => {
-                return Err(TechniqueError::UnsuitableLight {
-                    technique,
-                    light: number,
-                    why: "an image was asked for on a round light".to_owned(),
-                    valid: "rectangles for light-image",
-                });
-            }
-            (None, shape) => Contents::Plain(shape),
+        let shape = side.projector.image();
+        let Some(moment) = image else {
+            let texture = table::create(&settings.table, &Contents::Plain(shape), recording)?;
+            return Ok(Self::Table(settings.table, texture));
         };
-        let texture = table::create(&settings.table, &contents, recording)?;
-        Ok(Self::Table(settings.table, texture))
+        if shape != Image::Square {
+            return Err(TechniqueError::UnsuitableLight {
+                technique,
+                light: number,
+                why: "an image was asked for on a light that is no rectangle".to_owned(),
+                valid: "rectangles for light-image",
+            });
+        }
+        let mut texture =
+            |of: &LightImage| table::create(&settings.table, &Contents::Coloured(of), recording);
+        let first = texture(&moment.image)?;
+        let Some((next, _)) = &moment.next else {
+            return Ok(Self::Table(settings.table, first));
+        };
+        let tables = BlendedTables {
+            table: settings.table,
+            parts: moment.parts().map(|p| p as f32),
+        };
+        Ok(Self::Blended(tables, [first, texture(next)?]))
     }
 
-    /// The coverage texture, where there is one.
-    pub(crate) fn texture(self) -> Option<TextureId> {
-        match self {
-            Self::Exact => None,
-            Self::Table(_, texture) => Some(texture),
-        }
+    /// The coverage textures, where there are some.
+    pub(crate) fn textures(self) -> impl Iterator<Item = TextureId> {
+        let both = match self {
+            Self::Exact => [None; 2],
+            Self::Table(_, texture) => [Some(texture), None],
+            Self::Blended(_, both) => both.map(Some),
+        };
+        both.into_iter().flatten()
     }
 
     /// The shader of one edge.
@@ -265,6 +325,54 @@ impl Covering {
                 edge,
                 plane,
                 to,
+            }
+            .stage(),
+            Self::Blended(covering, _) => Penumbra {
+                light,
+                covering,
+                edge,
+                plane,
+                to,
+            }
+            .stage(),
+        }
+    }
+
+    /// The same split over 8-bit buffers (paper IV): coverage has to be in textures.
+    pub(crate) fn split_shader(
+        self,
+        side: &LightSide,
+        edge: Edge,
+        plane: HardPlane,
+        halves: Halves,
+        colors: u32,
+    ) -> FragmentStage {
+        let light = side.projector;
+        match self {
+            Self::Exact => SplitPenumbra {
+                light,
+                edge,
+                plane,
+                tables: Tables::default(),
+                halves,
+            }
+            .stage(),
+            Self::Table(covering, _) => SplitTextured {
+                light,
+                covering,
+                edge,
+                plane,
+                halves,
+                colors,
+            }
+            .stage(),
+            Self::Blended(covering, _) => SplitTextured {
+                light,
+                covering,
+                edge,
+                plane,
+                halves,
+                colors,
             }
             .stage(),
         }

@@ -9,6 +9,7 @@
 use glam::DVec3;
 
 use crate::geometry::caster::CasterPolicy;
+use crate::geometry::layers::most_layers;
 use crate::geometry::outlines::pieces;
 use crate::geometry::silhouette::{Orientation, Silhouette};
 use crate::geometry::slivers::{Slivers, facing};
@@ -48,9 +49,9 @@ pub(crate) struct Silhouettes {
 
 /// The casters of a scene, examined once for all lights.
 pub(crate) struct SoftCasters<'a> {
-    camera: &'a Camera,
+    pub(super) camera: &'a Camera,
     before_near_plane: NearPyramid,
-    examined: Vec<Examined<'a>>,
+    pub(super) examined: Vec<Examined<'a>>,
 }
 
 impl<'a> SoftCasters<'a> {
@@ -74,40 +75,37 @@ impl<'a> SoftCasters<'a> {
         sizes.reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 
+    /// How many umbrae may lie over one another, of the light at `centre`.
+    pub(crate) fn most_layers(&self, centre: DVec3) -> usize {
+        let light = HardLight::Point(centre);
+        let volume = |e: &Examined<'_>| e.caster.volume(&e.object.mesh, light);
+        let volumes: Vec<ShadowVolume> = self.examined.iter().map(volume).collect();
+        most_layers(light, &volumes.iter().collect::<Vec<_>>())
+    }
+
     /// Silhouettes seen from `centre`, of all casters together.
     pub(crate) fn silhouettes(&self, centre: DVec3) -> Silhouettes {
-        let mut all = Silhouettes::default();
-        for caster in self.each(centre) {
-            all.edges.extend(caster.edges);
-            all.eye_count += caster.eye_count;
-            all.near_caps.extend(caster.near_caps);
-        }
-        all
+        Silhouettes::together(self.each(centre))
     }
 
     /// Silhouettes seen from `centre`, caster by caster.
-    pub(crate) fn each(&self, centre: DVec3) -> Vec<Silhouettes> {
+    fn each(&self, centre: DVec3) -> impl Iterator<Item = Silhouettes> {
+        let all = 0..self.examined.len();
+        all.map(move |index| self.of_caster(index, centre))
+    }
+
+    pub(super) fn of_caster(&self, index: usize, centre: DVec3) -> Silhouettes {
         let light = HardLight::Point(centre);
-        let of = |examined: &Examined<'_>| {
-            let mesh = &examined.object.mesh;
-            let volume = examined.caster.volume(mesh, light);
-            self.of_mesh(mesh, &examined.silhouette(light), &volume, centre)
-        };
-        self.examined.iter().map(of).collect()
+        let examined = &self.examined[index];
+        let mesh = &examined.object.mesh;
+        let volume = examined.caster.volume(mesh, light);
+        self.of_mesh(mesh, &examined.silhouette(light), &volume, centre)
     }
 
     /// Silhouettes seen from `centre`, outline by outline with its holes, caster
     /// after caster.
     pub(crate) fn outlines(&self, centre: DVec3) -> Vec<Silhouettes> {
         let light = HardLight::Point(centre);
-        let of_piece = |piece: Mesh| {
-            let adjacency = EdgeAdjacency::new(piece.triangles());
-            let facing = facing(&piece, &adjacency, light, Slivers::WithoutArea);
-            let orientation = Orientation::generalised(&facing);
-            let silhouette = Silhouette::new(&piece, &adjacency, &orientation);
-            let volume = ShadowVolume::generalised(&piece, &adjacency, light);
-            self.of_mesh(&piece, &silhouette, &volume, centre)
-        };
         let pieces = self.examined.iter().flat_map(|examined| {
             let adjacency = examined.caster.adjacency();
             pieces(
@@ -116,11 +114,23 @@ impl<'a> SoftCasters<'a> {
                 &examined.orientation(light),
             )
         });
-        let all = pieces.map(of_piece);
+        let parts = pieces.flat_map(|piece| self.parts_of_piece(&piece, centre));
+        let all = parts.map(|(silhouettes, _)| silhouettes);
         all.filter(Silhouettes::hides_anything).collect()
     }
 
-    fn of_mesh(
+    /// Of a surface all of which casts.
+    pub(super) fn of_piece(&self, piece: &Mesh, centre: DVec3) -> Silhouettes {
+        let light = HardLight::Point(centre);
+        let adjacency = EdgeAdjacency::new(piece.triangles());
+        let facing = facing(piece, &adjacency, light, Slivers::WithoutArea);
+        let orientation = Orientation::generalised(&facing);
+        let silhouette = Silhouette::new(piece, &adjacency, &orientation);
+        let volume = ShadowVolume::generalised(piece, &adjacency, light);
+        self.of_mesh(piece, &silhouette, &volume, centre)
+    }
+
+    pub(super) fn of_mesh(
         &self,
         mesh: &Mesh,
         silhouette: &Silhouette,
@@ -141,13 +151,24 @@ impl<'a> SoftCasters<'a> {
 }
 
 impl Silhouettes {
-    fn hides_anything(&self) -> bool {
+    /// Those of several as one.
+    pub(super) fn together(several: impl IntoIterator<Item = Self>) -> Self {
+        let mut all = Self::default();
+        for caster in several {
+            all.edges.extend(caster.edges);
+            all.eye_count += caster.eye_count;
+            all.near_caps.extend(caster.near_caps);
+        }
+        all
+    }
+
+    pub(super) fn hides_anything(&self) -> bool {
         !self.edges.is_empty() || self.eye_count != 0 || !self.near_caps.is_empty()
     }
 }
 
 impl SoftEdge {
-    fn new(ends: [DVec3; 2], centre: DVec3, eye: DVec3) -> Self {
+    pub(super) fn new(ends: [DVec3; 2], centre: DVec3, eye: DVec3) -> Self {
         let plane = hard_plane(centre, ends);
         let normal = plane.map_or(DVec3::ZERO, |p| p.normal);
         Self {
@@ -169,7 +190,7 @@ impl SoftEdge {
 }
 
 /// A point next to the eye, on no plane that a scene is likely to have.
-fn beside_eye(camera: &Camera) -> DVec3 {
+pub(super) fn beside_eye(camera: &Camera) -> DVec3 {
     let [right, up, forward] = camera.basis();
     let hair = camera.near * 1e-6;
     camera.eye + (forward + right * 0.389_1 + up * 0.217_3) * hair

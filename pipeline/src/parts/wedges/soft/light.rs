@@ -1,14 +1,17 @@
 //! Area lights as shaders project edges on them.
 
 use glam::DVec3;
-use gnomon_shaders::coverage::{Edge, FlatLight, Image, Projector, SphereLight};
+use gnomon_shaders::coverage::{
+    Edge, FlatLight, Image, MAX_CORNERS, Outline, Projector, SphereLight,
+};
 use gnomon_shaders::soft_volumes::HardPlane;
 
 use super::edges::SoftEdge;
+use super::table::polygon_image;
 use crate::geometry::area_light::AreaLight;
 use crate::parts::passes::View;
 use crate::technique::TechniqueError;
-use crate::world::light::{HardLight, Light, LightShape};
+use crate::world::light::{ConvexPolygon, HardLight, Light, LightShape};
 use crate::world::mesh::{narrow, widen};
 
 /// A light for wedges and for shaders: flat lights once for each side.
@@ -56,7 +59,8 @@ impl SoftLight {
             technique,
             light: number,
             why,
-            valid: "rectangles, discs, spheres, and points for hard shadows",
+            valid: "rectangles, discs, spheres, convex polygons of up to 16 corners, and points \
+                    for hard shadows",
         };
         let HardLight::Point(centre) = light.hard() else {
             return Err(refused("it is directional".to_owned()));
@@ -73,12 +77,12 @@ impl SoftLight {
         if extent(&light.shape) <= least.max(f64::from(f32::MIN_POSITIVE)) {
             return Ok(soft);
         }
-        let rows = match light.shape {
-            LightShape::Point { .. } => return Ok(soft),
-            LightShape::Rectangle { edge_u, edge_v, .. } => square_rows(edge_u, edge_v),
-            LightShape::Disc { normal, radius, .. } => disc_rows(normal, radius),
+        let rows = match &light.shape {
+            LightShape::Point { .. } | LightShape::Directional { .. } => return Ok(soft),
+            LightShape::Rectangle { edge_u, edge_v, .. } => square_rows(*edge_u, *edge_v),
+            LightShape::Disc { normal, radius, .. } => disc_rows(*normal, *radius),
             LightShape::Sphere { .. } => [DVec3::X, DVec3::Y, DVec3::Z],
-            _ => return Err(refused("it is a polygon".to_owned())),
+            LightShape::Polygon(polygon) => disc_rows(polygon.area_vector(), extent(&light.shape)),
         };
         let area = AreaLight::new(&light.shape).map_err(|e| refused(e.to_string()))?;
         let at = narrow(view.relative(origin));
@@ -86,8 +90,13 @@ impl SoftLight {
             let offset = rows.map(|r| r.dot(origin - centre));
             is_far.then(|| narrow(DVec3::from_array(offset)))
         };
-        let image = match light.shape {
+        let image = match &light.shape {
             LightShape::Rectangle { .. } => Image::Square,
+            LightShape::Polygon(polygon) => {
+                let corners = polygon.vertices().len();
+                let outline = outline(polygon, rows);
+                Image::Polygon(outline.ok_or_else(|| refused(format!("it has {corners} corners")))?)
+            }
             _ => Image::Disc,
         };
         let flat = |rows: [DVec3; 3], area: AreaLight| LightSide {
@@ -162,7 +171,12 @@ fn extent(shape: &LightShape) -> f64 {
     match shape {
         LightShape::Rectangle { edge_u, edge_v, .. } => edge_u.length().max(edge_v.length()),
         LightShape::Disc { radius, .. } | LightShape::Sphere { radius, .. } => *radius,
-        _ => f64::INFINITY,
+        LightShape::Polygon(polygon) => {
+            let centre = polygon.centroid();
+            let away = polygon.vertices().iter().map(|v| (*v - centre).length());
+            away.fold(0.0, f64::max)
+        }
+        LightShape::Point { .. } | LightShape::Directional { .. } => f64::INFINITY,
     }
 }
 
@@ -222,6 +236,26 @@ fn square_rows(edge_u: DVec3, edge_v: DVec3) -> [DVec3; 3] {
         normal.cross(u) / squared,
         normal / squared.sqrt(),
     ]
+}
+
+/// A polygon in the light's coordinates; `None` where it has too many corners.
+fn outline(polygon: &ConvexPolygon, [u, v, _]: [DVec3; 3]) -> Option<Outline> {
+    let centre = polygon.centroid();
+    let place = |p: &DVec3| [u, v].map(|row| row.dot(*p - centre) as f32);
+    let mut corners = [[0.0; 2]; MAX_CORNERS];
+    let vertices = polygon.vertices();
+    for (to, vertex) in corners.get_mut(..vertices.len())?.iter_mut().zip(vertices) {
+        *to = place(vertex);
+    }
+    let outline = Outline {
+        area: 0.0,
+        count: vertices.len() as u32,
+        corners,
+    };
+    Some(Outline {
+        area: polygon_image(&outline).area() as f32,
+        ..outline
+    })
 }
 
 fn disc_rows(normal: DVec3, radius: f64) -> [DVec3; 3] {

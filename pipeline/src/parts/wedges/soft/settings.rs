@@ -48,7 +48,6 @@ pub(crate) const SPHERE: Param<SphereDisc> = Param::choice(
 /// Lights of both techniques on soft shadow volumes.
 pub(crate) const SOFT_LIGHTS: LightKinds = LightKinds {
     directions: false,
-    polygons: false,
     ..LightKinds::ALL
 };
 

@@ -10,6 +10,7 @@ use gnomon_raster::{
 use gnomon_shaders::coverage::Image;
 use gnomon_shaders::split_volumes::{ANGLE_SIDE, AREA_SIDE, FULL, HALF_TURN, SPLIT_ENTRIES};
 
+use super::table::polygon_image;
 use crate::technique::TechniqueError;
 
 /// All three textures, in the order of the shader's slots 1 to 3.
@@ -63,10 +64,10 @@ fn angles(recording: &mut Recording) -> Result<TextureId, TechniqueError> {
 
 /// Twice the share of the light between the rays at two angles, on the side where
 /// they are less than half a turn apart. 16 bits (a half float) for discs, 8 for
-/// squares.
+/// squares and polygons.
 fn areas(image: Image, recording: &mut Recording) -> Result<TextureId, TechniqueError> {
     let format = match image {
-        Image::Square => Format::R8Unorm,
+        Image::Square | Image::Polygon(_) => Format::R8Unorm,
         Image::Disc => Format::R16Float,
     };
     let desc = TextureDescriptor::d2("areas", format, AREA_SIDE, AREA_SIDE);
@@ -85,11 +86,13 @@ fn areas(image: Image, recording: &mut Recording) -> Result<TextureId, Technique
 fn share_between(image: Image, from: f64, to: f64) -> f64 {
     let turn = (to - from).abs();
     let turn = turn.min(2.0 * PI - turn);
+    let ray = |a: f64| DVec2::new(libm::cos(a), libm::sin(a));
     match image {
         Image::Disc => turn / (2.0 * PI),
-        Image::Square => {
-            let ray = |a: f64| DVec2::new(libm::cos(a), libm::sin(a));
-            crate::geometry::coverage::square_share(ray(from), ray(to))
+        Image::Square => crate::geometry::coverage::square_share(ray(from), ray(to)),
+        Image::Polygon(outline) => {
+            let polygon = polygon_image(&outline);
+            polygon.sector(ray(from), ray(to)) / polygon.area()
         }
     }
 }
@@ -106,4 +109,109 @@ fn split(recording: &mut Recording) -> Result<TextureId, TechniqueError> {
     let texels: Vec<[f32; 4]> = (0..SPLIT_ENTRIES).map(texel).collect();
     recording.write(texture, Subresource::default(), &texels)?;
     Ok(texture)
+}
+
+#[cfg(test)]
+mod tests {
+    use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader, FragmentStage};
+    use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
+    use gnomon_raster::{
+        CommandList, F32, Gpu, GpuConfig, I32, Lanes, LoadOp, RenderPass, RenderPipeline,
+    };
+    use gnomon_shaders::split_volumes::{angle_texel, area_texel};
+    use gnomon_shaders::transform::FullScreen;
+
+    use super::*;
+    use crate::parts::visibility::{attachment, binding, full_screen};
+
+    const SIDE: u32 = 256;
+
+    /// A direction for each pixel, on the square -1..1 but for its middle.
+    fn direction(column: f64, row: f64) -> [f64; 2] {
+        [column, row].map(|v| (2.0 * v + 1.0) / f64::from(SIDE) - 1.0)
+    }
+
+    /// The stored angle of the pixel's direction, and the area between that and a right
+    /// angle: the penumbra shader's own look-ups.
+    struct LookUp;
+
+    impl FragmentShader for LookUp {
+        fn outputs(&self) -> FragmentOutputs {
+            FragmentOutputs {
+                textures: 2,
+                ..FragmentOutputs::default()
+            }
+        }
+
+        #[inline(always)]
+        fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+            let scale = 2.0 / SIDE as f32;
+            let place = |k: I32<L>| k.to_f32() * scale + (0.5 * scale - 1.0);
+            let towards = [place(f.column()), place(f.row())];
+            let [angle, ..] = f.fetch_texel(0, angle_texel(l, towards), 0);
+            let right = F32::splat(l, 0.5 * HALF_TURN);
+            let [area, ..] = f.fetch_texel(1, area_texel(l, [angle, right]), 0);
+            f.set_color(0, [angle, area, area, area]);
+        }
+    }
+
+    fn looked_up(image: Image) -> Vec<[f64; 2]> {
+        let mut recording = Recording::default();
+        let [angles, areas, _] = create(image, &mut recording).unwrap();
+        let desc = TextureDescriptor::d2("out", Format::Rgba32Float, SIDE, SIDE);
+        let out = recording.create(&desc).unwrap();
+        let pipeline = RenderPipeline {
+            label: "look up".into(),
+            vertex: FullScreen.stage(),
+            fragment: Some(FragmentStage::from(LookUp)),
+            primitive: PrimitiveState::default(),
+            depth_stencil: DepthStencilState::default(),
+            color_targets: vec![ColorTargetState::OPAQUE],
+        };
+        let pass = RenderPass {
+            label: "look up".into(),
+            color: vec![attachment(out, LoadOp::DontCare)],
+            depth_stencil: None,
+            draws: vec![full_screen(pipeline, [angles, areas].map(binding).to_vec())],
+        };
+        recording.list = CommandList { passes: vec![pass] };
+        let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
+        gpu.load(&recording).unwrap();
+        gpu.submit(&recording.list).unwrap();
+        let texels = gpu.texture(out).unwrap();
+        let texels = texels.read_color(Subresource::default()).unwrap();
+        let value = |t: &gnomon_raster::texture::ColorTexel| [t.0[0], t.0[1]].map(f64::from);
+        texels.iter().map(value).collect()
+    }
+
+    /// Half a texel of a face is at most 1/128 in the tangent: no angle is off by more, and
+    /// a map or a shader that is one texel off would be, nearly everywhere.
+    #[test]
+    fn angles_are_those_of_the_nearest_texel() {
+        for (at, [angle, _]) in looked_up(Image::Disc).into_iter().enumerate() {
+            let (column, row) = (at as u32 % SIDE, at as u32 / SIDE);
+            let [x, y] = direction(f64::from(column), f64::from(row));
+            let off = angle / f64::from(HALF_TURN) * PI - libm::atan2(y, x);
+            let off = off - 2.0 * PI * (off / (2.0 * PI)).round();
+            let limit = 1.0 / f64::from(ANGLE_SIDE) + PI / f64::from(HALF_TURN);
+            assert!(off.abs() <= limit, "{x} {y}: {off}");
+        }
+    }
+
+    /// Areas between an angle of the map and the nearest to a right one, rounded to 8 bits
+    /// or a half: half a step of the map of areas for each of the two, and half a texel.
+    #[test]
+    fn areas_are_those_between_the_nearest_angles() {
+        for image in [Image::Disc, Image::Square] {
+            for [angle, area] in looked_up(image) {
+                let angle = angle / f64::from(HALF_TURN) * PI;
+                let want = share_between(image, angle, 0.5 * PI);
+                // A step is 2 pi / 255; a square's share grows by at most 1/4 a radian.
+                let limit = 2.0 * 0.25 * PI / 255.0 + 1.0 / 1020.0 + 1e-4;
+                let off = (0.5 * area - want).abs();
+                let wraps = want > 0.5 - limit; // half a turn may be taken either way
+                assert!(off <= limit || wraps, "{image:?} {angle}: {off}");
+            }
+        }
+    }
 }

@@ -16,6 +16,7 @@ use gnomon_raster::state::{
     PrimitiveState, StencilFaceState, StencilOperation, StencilState,
 };
 use gnomon_raster::{Draw, RenderPipeline, TextureBinding, VertexBuffer};
+use gnomon_shaders::split_volumes::resolve::COUNT_BITS;
 use gnomon_shaders::transform::{FullScreen, HomogeneousPoints};
 
 use crate::geometry::area_light::AreaLight;
@@ -23,6 +24,9 @@ use crate::geometry::wedge::{Construction, Wedge, WedgeMesh, WedgeStatistics};
 use crate::parts::passes::{self, View};
 use crate::parts::visibility::{full_screen, homogeneous, homogeneous_draw};
 use crate::technique::{DrawRole, Warning};
+
+/// The stencil's bit that notes pixels of wedges; the others may hold a count.
+const NOTED: u8 = !COUNT_BITS;
 
 /// By how much the light, and the edge, are enlarged.
 const LARGER_LIGHT: f64 = 2e-4;
@@ -135,7 +139,7 @@ impl WedgeArea {
                 color_targets: vec![ColorTargetState::NONE; p.targets.len()],
             };
             let mut draw = homogeneous_draw("note", pipeline, vertices, triangles, Vec::new());
-            draw.stencil_reference = [1; 2];
+            draw.stencil_reference = [NOTED; 2];
             draws.push((draw, DrawRole::Note));
         }
         let pipeline = RenderPipeline {
@@ -147,7 +151,7 @@ impl WedgeArea {
             color_targets: p.targets,
         };
         let mut draw = homogeneous_draw(p.label, pipeline, vertices, triangles, p.textures);
-        draw.stencil_reference = [1; 2];
+        draw.stencil_reference = [NOTED; 2];
         draws.push((draw, p.role));
         draws
     }
@@ -162,7 +166,7 @@ fn culled(cull_mode: CullMode) -> PrimitiveState {
 
 /// Depth outwards, by the rounding of depth and several times what the snapping
 /// of vertices to 1/256 pixel moves a sloping plane.
-fn bias(sign: f32) -> DepthBias {
+pub(super) fn bias(sign: f32) -> DepthBias {
     DepthBias {
         constant: 4.0 * sign,
         slope: sign / 64.0,
@@ -174,6 +178,7 @@ fn bias(sign: f32) -> DepthBias {
 fn note_front() -> DepthStencilState {
     let face = StencilFaceState {
         pass_op: StencilOperation::Replace,
+        write_mask: NOTED,
         ..StencilFaceState::IGNORE
     };
     DepthStencilState {
@@ -202,6 +207,8 @@ fn shade_back(skip: bool, noted: bool, note: Note) -> DepthStencilState {
         compare: CompareFunction::Equal,
         pass_op: after,
         depth_fail_op: after,
+        read_mask: NOTED,
+        write_mask: NOTED,
         ..StencilFaceState::IGNORE
     };
     DepthStencilState {

@@ -3,8 +3,10 @@
 use rayon::prelude::*;
 
 use super::{AreaOracle, CLASS_TOLERANCE, Workspace};
+use crate::geometry::coverage::ImageSums;
 use crate::truth::oracle::surfaces::{Receiver, Surfaces};
 use crate::world::error::LightError;
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
 
 /// Where a receiver lies in a light's shadow, by exact visibility.
@@ -73,6 +75,29 @@ impl VisibilityImage {
         let per_row = || {
             let (oracle, mut work) = (&oracle, Workspace::default());
             move |receiver: &Receiver, _| oracle.visibility_with(receiver, &mut work).share
+        };
+        Ok(Self::of_pixels(&surfaces, scene, size, row_done, per_row))
+    }
+
+    /// The same of one colour of an image on the light, 0 for red, which is a rectangle.
+    ///
+    /// # Errors
+    /// As [`VisibilityImage::of_scene`].
+    ///
+    /// # Panics
+    /// There is no such light.
+    pub fn of_light_image(
+        scene: &Scene,
+        light: usize,
+        (image, colour): (&LightImage, usize),
+        size: [u32; 2],
+        row_done: &(dyn Fn() + Sync),
+    ) -> Result<Self, LightError> {
+        let (surfaces, oracle) = AreaOracle::of_scene(scene, light)?;
+        let sums = ImageSums::new(image);
+        let per_row = || {
+            let (oracle, sums, mut work) = (&oracle, &sums, Workspace::default());
+            move |receiver: &Receiver, _| oracle.colours_with(sums, receiver, &mut work)[colour]
         };
         Ok(Self::of_pixels(&surfaces, scene, size, row_done, per_row))
     }

@@ -43,10 +43,11 @@ mod occluder;
 
 use std::ops::ControlFlow;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::bvh::{Bvh, Ray, Region};
 use super::surfaces::{Receiver, Surfaces};
+use crate::geometry::coverage::ImageSums;
 use crate::world::error::LightError;
 use crate::world::light::{HardLight, LightShape};
 use crate::world::scene::Scene;
@@ -156,6 +157,28 @@ impl AreaOracle {
             Some(light) => self.of_flat(&light, receiver, work),
             None => Visibility::simple(self.of_hard(receiver)),
         }
+    }
+
+    /// Share of each colour of an image on a rectangle that `receiver` sees.
+    pub fn colours_with(
+        &self,
+        image: &ImageSums,
+        receiver: &Receiver,
+        work: &mut Workspace,
+    ) -> [f64; 3] {
+        let Some(light) = self.emitter.seen_from(receiver.point) else {
+            return [self.of_hard(receiver); 3];
+        };
+        self.cut(&light, receiver, work);
+        // The image's coordinates go from -1 to 1 where the frame's go half as far.
+        let place = |p: &[f64; 2]| DVec2::from(*p) * 2.0;
+        let mut sum = [0.0; 3];
+        for polygon in work.fragments.polygons() {
+            let corners: Vec<DVec2> = polygon.iter().map(place).collect();
+            let part = image.within(&corners);
+            sum = [0, 1, 2].map(|c| sum[c] + part[c]);
+        }
+        sum.map(|v: f64| v.clamp(0.0, 1.0))
     }
 
     /// A light without extent, or a sphere with the receiver in it.

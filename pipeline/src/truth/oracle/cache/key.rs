@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::truth::oracle::area::ORACLE_VERSION;
 use crate::truth::oracle::sampled::SAMPLED_VERSION;
 use crate::world::light::LightShape;
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
 
 /// Hash of everything that decides an oracle image.
@@ -40,6 +41,21 @@ impl Key {
         hasher.0.update(b"rays");
         hasher.0.update(&Self::of(scene, light, size).0);
         hasher.integers([SAMPLED_VERSION, side, seed as u32, (seed >> 32) as u32]);
+        Self(*hasher.0.finalize().as_bytes())
+    }
+
+    /// The same for one colour of an image on the light.
+    pub(super) fn of_light_image(
+        scene: &Scene,
+        light: &LightShape,
+        size: [u32; 2],
+        (image, colour): (&LightImage, usize),
+    ) -> Self {
+        let mut hasher = Hasher(blake3::Hasher::new());
+        hasher.0.update(b"light image");
+        hasher.0.update(&Self::of(scene, light, size).0);
+        hasher.integers([image.side() as u32, colour as u32]);
+        image.cells().iter().for_each(|cell| hasher.numbers(cell));
         Self(*hasher.0.finalize().as_bytes())
     }
 

@@ -4,6 +4,7 @@
 //! [`SCENES`]; every list, suite and message picks it up from there.
 
 mod adversarial;
+mod bust_and_trumpet;
 mod columns;
 mod creature;
 mod cylinder;
@@ -79,6 +80,7 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("creature", "biped of 15 overlapping closed parts", creature::scene),
     moving("walk", "animated: a creature walks round, a ball bounces, a knot and a beam turn (8 s)", walk::scene),
     entry("statue", "a figure of 70,000 triangles with folds and cavities on a pedestal", statue::scene),
+    entry("bust-and-trumpet", "a bust of 5,776 vertices and a trumpet of 8,557: what deferred shadowing was measured on", bust_and_trumpet::scene),
     entry("wireframe", "a ball of 1,920 wires with more than 10,000 silhouette edges under a sphere", wireframe::scene),
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),

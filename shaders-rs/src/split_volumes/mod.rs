@@ -1,6 +1,8 @@
 //! Soft shadow volumes with coverage split over 8-bit buffers (paper IV, §4.2 and
 //! §4.3), and visibilities of several silhouettes combined (§5.1).
 //!
+//! [`resolve`] makes visibility of the buffers and of a stencil's hard count.
+//!
 //! Coverage is a whole number of 4095ths, v. Its bits three by three,
 //! `(v >> 3i) & 7`, go to channel i of an additive buffer on the umbra side of the
 //! hard quad, and of a subtractive one on the other; five bits of each channel are
@@ -12,8 +14,11 @@
 //! of [`AREA_SIDE`]^2, and the split from one of [`SPLIT_ENTRIES`] texels, which
 //! leaves 10 bits of the 12.
 
+pub mod resolve;
+pub mod textured;
+
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
-use gnomon_raster::simd::{each3, each4};
+use gnomon_raster::simd::each4;
 use gnomon_raster::{F32, I32, Lanes, uniforms};
 
 use crate::coverage::{Edge, Projector, Segment, clip, covered};
@@ -116,9 +121,12 @@ impl SplitPenumbra {
     /// Coverage split over four channels, in steps of 1/255.
     #[inline(always)]
     fn bits<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>, segment: &Segment<L>) -> [F32<L>; 4] {
-        let exact = covered(l, self.light.image(), segment);
         let zero = F32::splat(l, 0.0);
-        let mut share = exact;
+        let mut share = if self.tables.coverage {
+            zero
+        } else {
+            covered(l, self.light.image(), segment)
+        };
         let mut looked_up = [zero; 4];
         let mut angles = [zero; 2];
         let [p, q] = segment.ends;
@@ -156,7 +164,7 @@ impl SplitPenumbra {
 
 /// Three bits of `round(4095 share)` a channel, in steps of 1/255.
 #[inline(always)]
-fn split<L: Lanes>(l: L, share: F32<L>) -> [F32<L>; 4] {
+pub fn split<L: Lanes>(l: L, share: F32<L>) -> [F32<L>; 4] {
     let v = (share * FULL).round_ties_even().to_i32();
     let seven = I32::splat(l, 7);
     [
@@ -170,7 +178,7 @@ fn split<L: Lanes>(l: L, share: F32<L>) -> [F32<L>; 4] {
 /// Texel of the angle cube for direction (x, y, 0): faces 0 to 3 in their middle
 /// row or column (Vulkan's orientation).
 #[inline(always)]
-fn angle_texel<L: Lanes>(l: L, [x, y]: [F32<L>; 2]) -> [I32<L>; 3] {
+pub fn angle_texel<L: Lanes>(l: L, [x, y]: [F32<L>; 2]) -> [I32<L>; 3] {
     let zero = F32::splat(l, 0.0);
     let flat = x.abs().gt(y.abs());
     let along = flat.select_f32(x, y);
@@ -193,7 +201,7 @@ fn angle_texel<L: Lanes>(l: L, [x, y]: [F32<L>; 2]) -> [I32<L>; 3] {
 
 /// Texel of the area map for two stored angles.
 #[inline(always)]
-fn area_texel<L: Lanes>(l: L, angles: [F32<L>; 2]) -> [I32<L>; 3] {
+pub fn area_texel<L: Lanes>(l: L, angles: [F32<L>; 2]) -> [I32<L>; 3] {
     let scale = (AREA_SIDE as f32 - 1.0) / (2.0 * HALF_TURN);
     let [a, b] = [
         ((angles[0] + HALF_TURN) * scale).round_ties_even().to_i32(),
@@ -208,92 +216,4 @@ fn split_texel<L: Lanes>(l: L, share: F32<L>) -> [I32<L>; 3] {
     let last = SPLIT_ENTRIES as f32 - 1.0;
     let place = (share * last).round_ties_even().clamp(0.0, last);
     [place.to_i32(), I32::splat(l, 0), I32::splat(l, 0)]
-}
-
-/// Visibility of a group of silhouettes, added to what other groups hide.
-/// Textures: the hard count, the additive and the subtractive buffer, and the
-/// combination so far, with red the paper's rule, green the largest and blue the
-/// sum of the hidden shares.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CombineGroups {
-    /// Nothing is combined so far.
-    pub first: bool,
-}
-uniforms!(CombineGroups { first });
-
-impl FragmentShader for CombineGroups {
-    fn outputs(&self) -> FragmentOutputs {
-        reads(4)
-    }
-
-    #[inline(always)]
-    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
-        let [hard, added, taken, so_far] = own_texels(l, f, 4);
-        let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
-        let difference = each4(
-            #[inline(always)]
-            |i| ((added[i] - taken[i]) * 255.0).round_ties_even(),
-        );
-        let [a, b, c, d] = difference;
-        let whole = a + (b + (c + d * 8.0) * 8.0) * 8.0;
-        let hidden = (one - (hard[0] + whole / FULL)).max(zero).min(one);
-        let [paper, most, sum, _] = if self.first { [zero; 4] } else { so_far };
-        let larger = paper.max(hidden);
-        let smaller = paper.min(hidden);
-        f.set_color(
-            0,
-            [
-                (larger + smaller * 0.5).min(one),
-                most.max(hidden),
-                sum + hidden,
-                one,
-            ],
-        );
-    }
-}
-
-/// How groups of silhouettes are combined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Combination {
-    /// The sum of what they hide, at most all.
-    Sum,
-    /// `max + min / 2`, group after group (paper IV, eq. 1), at most all.
-    Paper,
-    /// Half way from the largest to the sum, whatever the order.
-    Bounded,
-}
-uniforms!(enum Combination { 0: Sum, 1: Paper, 2: Bounded });
-
-/// Adds the visibility that [`CombineGroups`] leads to, times a weight; texture 0
-/// is its result.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AddVisibility {
-    /// The rule.
-    pub rule: Combination,
-    /// Share of the light.
-    pub weight: f32,
-}
-uniforms!(AddVisibility { rule, weight });
-
-impl FragmentShader for AddVisibility {
-    fn outputs(&self) -> FragmentOutputs {
-        reads(1)
-    }
-
-    #[inline(always)]
-    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
-        let [[paper, most, sum, _]] = own_texels(l, f, 1);
-        let one = F32::splat(l, 1.0);
-        let sum = sum.min(one);
-        let hidden = match self.rule {
-            Combination::Sum => sum,
-            Combination::Paper => paper,
-            Combination::Bounded => (most + sum) * 0.5,
-        };
-        let [r, g, b] = each3(
-            #[inline(always)]
-            |_| (one - hidden) * self.weight,
-        );
-        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
-    }
 }

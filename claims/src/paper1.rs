@@ -58,7 +58,7 @@ pub(super) const CLAIMS: &[Claim] = &[
     .read_from(&[Lines::one(750)]),
     Claim::quoted(
         "paper1-frame-rates",
-        "paper I, §7 and figure 15; thesis, §2.2.2",
+        "paper I, §7, figure 15; thesis, §2.2.2",
         "Athlon at 1.5 GHz: 2 fps in software beside 20 fps of Heckbert and Herf's shadows \
          on a GeForce3; 1.8 fps at 512x512; wedges of 6 to 16 quads in hardware 5 fps.",
     )

@@ -192,6 +192,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 64);
+        assert_eq!(table.fragment_shaders().count(), 67);
     }
 }

@@ -138,7 +138,7 @@ fn kernels_become_brute_force_as_points_become_texels() {
 #[test]
 fn discs_miss_no_patch_of_a_coarse_picture() {
     let scene = one_plate();
-    let base = ["map-size=8", "patches=rectangles"];
+    let base = ["map-size=16", "patches=rectangles"];
     let mean = |set: &[&str]| {
         let done = drawn(&scene, &[&base, set].concat());
         let seen = done.visibility.iter().filter(|v| !v.is_nan());

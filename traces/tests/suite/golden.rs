@@ -161,3 +161,25 @@ fn shapes_need_no_shaders() {
         assert_eq!(trace.shape(0).unwrap(), shape, "{name}");
     }
 }
+
+/// A file whose shaders were changed since still tells what it holds; that it cannot be
+/// drawn any more is said with shader and versions.
+#[test]
+fn files_of_older_shaders_tell_what_they_hold() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/retired");
+    let mut files = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let trace = Trace::open(&path).unwrap();
+        assert!(trace.lost().is_none());
+        for frame in 0..trace.frames() {
+            let shape = trace.shape(frame).unwrap();
+            assert!(shape.passes.iter().any(|p| !p.draws.is_empty()));
+            assert!(trace.counters(frame).unwrap().unskipped.is_some());
+            let refused = trace.recording(frame, &table()).err().unwrap().to_string();
+            assert!(refused.contains("version"), "{refused}");
+        }
+        files += 1;
+    }
+    assert!(files > 0);
+}

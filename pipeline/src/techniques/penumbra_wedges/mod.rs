@@ -131,7 +131,7 @@ const CULLING: Param<Culling> = Param::choice(
 )
 .when(Condition::All(&[
     Condition::Not("side-planes", &["evaluate", "naive"]),
-    CONTINUOUS,
+    Condition::Is("levels", &["continuous"]),
 ]));
 
 /// With wedges, not quads.
@@ -148,8 +148,7 @@ const LEVELS: Param<Option<u32>> = Param::<Option<u32>>::whole_or(
     [2, 64],
     Whole::Any,
     "continuous intensities, or as many quads for each wedge, counted by the depth test",
-)
-.when(Condition::Lights(LightFact::Extended));
+);
 
 /// What parameters decide.
 struct CrossingSettings {

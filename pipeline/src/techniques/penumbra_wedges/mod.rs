@@ -112,7 +112,8 @@ const SIDE_PLANES: Param<SidePlanes> = Param::choice(
     "intensity where rays pass side planes: left out since neighbours cancel, evaluated, or \
      by the equation for the inside at every plane",
 )
-.when(CONTINUOUS);
+// Under points too, where it decides whether faces may be culled.
+.when(Condition::Is("levels", &["continuous"]));
 
 choices! {
     /// What is culled.

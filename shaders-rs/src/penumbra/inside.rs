@@ -68,11 +68,11 @@ impl FragmentShader for WedgeInside {
         let counted = self.front == FrontTest::Counted;
         let umbra = F32::splat(l, if counted { -FULL } else { 0.0 });
         let nothing = Mask::splat(l, false);
-        let [culled, accepted] = self.classes.map_or(
-            [nothing; 2],
-            #[inline(always)]
-            |c| c.classes(l, f, 1),
-        );
+        // No `map_or`: it stays a call, and its lanes would lose their instructions.
+        let [culled, accepted] = match &self.classes {
+            Some(classes) => classes.classes(l, f, 1),
+            None => [nothing; 2],
+        };
         if !counted {
             // Lanes without tile left read no depth.
             f.discard(culled);

@@ -63,9 +63,8 @@ pub(super) fn overlap(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             buffer has at least half of them where they are most"
             .to_owned(),
         measures,
-        reason: "creature has too few edges behind one another at this size to pass 16. peer-c \
-            has so many that channels saturate: five bits are not enough there, and the \
-            technique warns of it (coverage-saturated)."
+        reason: "peer-c has so many edges behind one another that channels saturate: five bits are \
+            not enough there, and the technique warns of it (coverage-saturated)."
             .to_owned(),
         charts: vec![Chart {
             name: "paper4-overlap".to_owned(),

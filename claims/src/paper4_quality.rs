@@ -63,9 +63,10 @@ pub(super) fn overlap(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             buffer has at least half of them where they are most"
             .to_owned(),
         measures,
-        reason: "peer-c has so many edges behind one another that channels saturate: five bits are \
+        reason:
+            "peer-c has so many edges behind one another that channels saturate: five bits are \
             not enough there, and the technique warns of it (coverage-saturated)."
-            .to_owned(),
+                .to_owned(),
         charts: vec![Chart {
             name: "paper4-overlap".to_owned(),
             title: "Pixels by number of wedges that cover their surface".to_owned(),

@@ -4,7 +4,7 @@
 use crate::map_support::{
     self, SIZE, by, error, figure, plates, sampled_plate_error, scene, sized, truth,
 };
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 use gnomon_pipeline::truth::oracle::hard::{EdgeTolerance, HardTruth};
 use gnomon_pipeline::world::light::LightShape;
 use gnomon_pipeline::world::mesh::Shading;
@@ -133,7 +133,9 @@ fn scenes_are_the_truth_but_for_noise() {
 #[test]
 fn casters_behind_a_light_hide_nothing() {
     let mut scene = lit_by("cylinder", POINTS[0].clone());
-    let above = shape::cuboid(DVec3::new(0.0, 6.0, 0.0), DVec3::new(30.0, 0.2, 30.0));
+    // Aslant, so that its triangles' boxes reach below the light.
+    let aslant = DMat4::from_translation(DVec3::new(0.0, 7.0, 0.0)) * DMat4::from_rotation_x(0.5);
+    let above = shape::cuboid(DVec3::ZERO, DVec3::new(20.0, 0.2, 20.0)).transformed(aslant);
     let without = by("ray-traced", &scene, &[]);
     let lid = above.into_mesh(Shading::Flat).unwrap();
     let matt = Material::matt([0.7; 3]);

@@ -21,6 +21,7 @@ use gnomon_pipeline::world::scene::Scene;
 
 use crate::draw::Picture;
 pub(crate) use kind::OverlayKind;
+pub(crate) use sums::each_pixel;
 
 /// What overlays are drawn from.
 #[derive(Clone, Copy)]

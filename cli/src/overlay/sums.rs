@@ -14,11 +14,11 @@ pub(super) struct Sums {
 }
 
 /// A visible surface.
-pub(super) struct Place<'a> {
-    pub(super) surfaces: &'a Surfaces,
+pub(crate) struct Place<'a> {
+    pub(crate) surfaces: &'a Surfaces,
     /// Index over all surfaces.
-    pub(super) surface: u32,
-    pub(super) receiver: Receiver,
+    pub(crate) surface: u32,
+    pub(crate) receiver: Receiver,
 }
 
 impl Sums {
@@ -54,7 +54,7 @@ impl Sums {
 }
 
 /// What `of` finds at each pixel of a picture; nothing where no surface is.
-pub(super) fn each_pixel<T: Send>(
+pub(crate) fn each_pixel<T: Send>(
     scene: &Scene,
     size: [u32; 2],
     of: impl Fn(&Place<'_>) -> T + Sync,
@@ -67,7 +67,7 @@ pub(super) fn each_pixel<T: Send>(
         let hit = surfaces.hit(&rays, x, y)?;
         Some(of(&Place {
             surface: surfaces.index_of(&hit),
-            receiver: surfaces.receiver(&rays, x, y)?,
+            receiver: surfaces.receiver_of(&hit, &rays, x, y),
             surfaces: &surfaces,
         }))
     };

@@ -68,11 +68,10 @@ impl View {
         let surfaces = Surfaces::new(&scene);
         let rays = scene.camera.eye_rays(size[0], size[1]);
         let [x, y] = pixel.map(|c| f64::from(c) + 0.5);
-        let hit = surfaces.hit(&rays, x, y);
-        let receiver = surfaces.receiver(&rays, x, y);
-        let (Some(hit), Some(receiver)) = (hit, receiver) else {
+        let Some(hit) = surfaces.hit(&rays, x, y) else {
             return Err(refused(pixel, "no surface is seen there".to_owned()));
         };
+        let receiver = surfaces.receiver_of(&hit, &rays, x, y);
         let oracle = AreaOracle::new(&surfaces, &scene.lights[args.light].shape);
         let oracle = oracle.expect("a light that edges can cut has an extent");
         let point: DVec3 = receiver.point;

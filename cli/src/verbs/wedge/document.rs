@@ -5,7 +5,6 @@ use gnomon_pipeline::measure::visibility_sum::SilhouetteEdge;
 use gnomon_pipeline::world::scene::Scene;
 use serde::Serialize;
 
-use super::map::array;
 use super::run::Shown;
 use super::text::construction;
 
@@ -77,7 +76,7 @@ impl<'a> EdgeDocument<'a> {
             edge: number,
             object: &scene.objects[edge.object].name,
             vertices: edge.vertices,
-            ends: edge.ends.map(array),
+            ends: edge.ends.map(|e| e.to_array()),
         }
     }
 }

@@ -1,10 +1,9 @@
 //! What one edge adds to the visibility of each pixel.
 
-use glam::DVec3;
 use gnomon_pipeline::measure::visibility_sum::VisibilitySum;
-use gnomon_pipeline::truth::oracle::surfaces::Surfaces;
 use gnomon_pipeline::world::scene::Scene;
-use rayon::prelude::*;
+
+use crate::overlay::each_pixel;
 
 /// Signed coverage by pixel.
 pub(super) struct CoverageMap {
@@ -15,18 +14,13 @@ pub(super) struct CoverageMap {
 
 impl CoverageMap {
     pub(super) fn new(scene: &Scene, sum: &VisibilitySum, edge: usize, size: [u32; 2]) -> Self {
-        let surfaces = Surfaces::new(scene);
-        let rays = scene.camera.eye_rays(size[0], size[1]);
-        let pixels = size[0] as usize * size[1] as usize;
-        let value = |i: usize| {
-            let x = (i % size[0] as usize) as f64 + 0.5;
-            let y = (i / size[0] as usize) as f64 + 0.5;
-            let receiver = surfaces.receiver(&rays, x, y);
-            receiver.map_or(f64::NAN, |r| sum.contribution(edge, r.point))
-        };
+        let values = each_pixel(scene, size, |place| {
+            sum.contribution(edge, place.receiver.point)
+        });
+        let values = values.into_iter().map(|v| v.unwrap_or(f64::NAN));
         Self {
             size,
-            values: (0..pixels).into_par_iter().map(value).collect(),
+            values: values.collect(),
         }
     }
 
@@ -53,9 +47,4 @@ pub(super) struct Totals {
     pub(super) most_added: f64,
     pub(super) taking: usize,
     pub(super) most_taken: f64,
-}
-
-/// A point of an array.
-pub(super) fn array(p: DVec3) -> [f64; 3] {
-    p.to_array()
 }

@@ -4,7 +4,6 @@ use gnomon_pipeline::geometry::wedge::{Construction, Wedge};
 use gnomon_pipeline::measure::visibility_sum::SilhouetteEdge;
 use gnomon_pipeline::world::scene::Scene;
 
-use super::map::array;
 use super::run::Shown;
 use crate::output::tables::Table;
 
@@ -26,7 +25,7 @@ pub(super) fn edges(scene: &Scene, light: usize, edges: &[SilhouetteEdge]) -> St
     );
     let mut table = Table::new(&title, &["edge", "caster", "vertices", "from", "to"]);
     for (number, edge) in edges.iter().enumerate() {
-        let [from, to] = edge.ends.map(|e| point(array(e)));
+        let [from, to] = edge.ends.map(|e| point(e.to_array()));
         table.rows.push(vec![
             number.to_string(),
             scene.objects[edge.object].name.clone(),
@@ -40,7 +39,7 @@ pub(super) fn edges(scene: &Scene, light: usize, edges: &[SilhouetteEdge]) -> St
 
 /// One wedge.
 pub(super) fn wedge(shown: &Shown<'_>, written: &[String]) -> String {
-    let [from, to] = shown.edge.ends.map(|e| point(array(e)));
+    let [from, to] = shown.edge.ends.map(|e| point(e.to_array()));
     let mut text = format!(
         "{}, light {}, edge {} of {}: {from} to {to}\n",
         shown.scene.name, shown.light, shown.number, shown.scene.objects[shown.edge.object].name,

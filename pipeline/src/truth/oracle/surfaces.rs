@@ -95,12 +95,17 @@ impl Surfaces {
     /// The receiver under image point `(x, y)`: see [`Receiver`].
     pub fn receiver(&self, rays: &EyeRays, x: f64, y: f64) -> Option<Receiver> {
         let hit = self.hit(rays, x, y)?;
+        Some(self.receiver_of(&hit, rays, x, y))
+    }
+
+    /// The receiver at `hit`, which is what the eye sees under image point `(x, y)`.
+    pub fn receiver_of(&self, hit: &SurfaceHit, rays: &EyeRays, x: f64, y: f64) -> Receiver {
         let direction = rays.direction(x, y);
         let seen = rays.origin + direction * hit.depth;
-        let surface = self.index_of(&hit);
+        let surface = self.index_of(hit);
         let corners = &self.corners[surface as usize];
         let casts = self.casts[hit.object as usize];
-        Some(Receiver::on_facet(corners, seen, direction).with_caster(casts.then_some(surface)))
+        Receiver::on_facet(corners, seen, direction).with_caster(casts.then_some(surface))
     }
 }
 

@@ -11,7 +11,6 @@
 //! All arithmetic is f32: receivers whose light passes an edge by less than rounding may
 //! go either way.
 
-mod hierarchy;
 mod textures;
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};

@@ -100,8 +100,11 @@ impl LineSamples {
             if leaf.any() {
                 let facet = low[3].to_i32();
                 let first = facet + (facet << 1);
-                let corner = |k: I32<L>| leaf.select_i32(first + k, outside);
-                let at = [corner(I32::splat(l, 0)), corner(one), corner(two)];
+                let at = [
+                    leaf.select_i32(first, outside),
+                    leaf.select_i32(first + one, outside),
+                    leaf.select_i32(first + two, outside),
+                ];
                 let corners = [
                     facets.read(l, f, FACETS, at[0]),
                     facets.read(l, f, FACETS, at[1]),

@@ -170,6 +170,13 @@ impl LineSamples {
         }
     }
 
+    /// Which line a point is on, between those next to it.
+    #[inline(always)]
+    fn line_of<L: Lanes>(&self, r: &Receiver<L>, end: &[F32<L>; 3]) -> F32<L> {
+        let y = (r.y + r.z * (end[1] / end[2])) / r.scale;
+        (y - self.spacing[0]) / self.spacing[1]
+    }
+
     /// The lines that an edge may cross for some receiver, and one more on each side.
     #[inline(always)]
     fn lines_met<L: Lanes>(
@@ -181,13 +188,10 @@ impl LineSamples {
     ) -> [usize; 2] {
         let zero = F32::splat(l, 0.0);
         let before = image.from[2].gt(zero) & image.to[2].gt(zero);
-        let place = #[inline(always)]
-        |end: &[F32<L>; 3]| {
-            let y = (r.y + r.z * (end[1] / end[2])) / r.scale;
-            (y - self.spacing[0]) / self.spacing[1] - events.first as f32
-        };
         let most = events.lines as f32;
-        let [a, b] = [place(&image.from), place(&image.to)];
+        let first = events.first as f32;
+        let a = self.line_of(r, &image.from) - first;
+        let b = self.line_of(r, &image.to) - first;
         let low = before.select_f32(a.min(b), zero).clamp(0.0, most);
         let high = before
             .select_f32(a.max(b), F32::splat(l, most))
@@ -226,22 +230,28 @@ fn faces<L: Lanes>(l: L, r: &Receiver<L>, [x, y, z, offset]: [f32; 4]) -> Mask<L
 /// pixels, may count it on the wrong side.
 #[inline(always)]
 fn near_anchor<L: Lanes>(l: L, r: &Receiver<L>, image: &Image<L>) -> Mask<L> {
-    let place = #[inline(always)]
-    |end: &[F32<L>; 3]| {
-        let x = end[0] + end[2] * (r.x * r.inverse);
-        let y = end[1] + end[2] * (r.y * r.inverse);
-        [x, y, end[2]]
-    };
-    let ([x0, y0, z0], [x1, y1, z1]) = (place(&image.from), place(&image.to));
+    let ([x0, y0, z0], [x1, y1, z1]) = (from_anchor(r, &image.from), from_anchor(r, &image.to));
     let zero = F32::splat(l, 0.0);
     let before = z0.gt(zero) & z1.gt(zero);
-    let beside = #[inline(always)]
-    |a: F32<L>, b: F32<L>| a.min(b).gt(r.slack) | a.max(b).lt(-r.slack);
-    let far = before & (beside(x0, x1) | beside(y0, y1));
+    let far = before & (beside(r.slack, x0, x1) | beside(r.slack, y0, y1));
     let area = (x0 * y1 - x1 * y0).abs() * z0.min(z1);
     let size = (x1 * z0 - x0 * z1).abs() + (y1 * z0 - y0 * z1).abs();
     let close = area.le(r.slack * size) | !before;
     image.some & !far & close
+}
+
+/// An edge's end from the light's centre, times its distance.
+#[inline(always)]
+fn from_anchor<L: Lanes>(r: &Receiver<L>, end: &[F32<L>; 3]) -> [F32<L>; 3] {
+    let x = end[0] + end[2] * (r.x * r.inverse);
+    let y = end[1] + end[2] * (r.y * r.inverse);
+    [x, y, end[2]]
+}
+
+/// Whether both are beyond a limit on one side.
+#[inline(always)]
+fn beside<L: Lanes>(limit: F32<L>, a: F32<L>, b: F32<L>) -> Mask<L> {
+    a.min(b).gt(limit) | a.max(b).lt(-limit)
 }
 
 /// Along an edge, where a coordinate is 0; infinite where it is not.
@@ -262,9 +272,8 @@ impl<L: Lanes> Spine<L> {
         let zero = F32::splat(l, 0.0);
         let (from, to) = (&image.from, &image.to);
         let offset = ((r.x - r.anchor[0]) - slope * (r.y - r.anchor[1])) * r.inverse;
-        let across = #[inline(always)]
-        |end: &[F32<L>; 3]| (end[0] - slope * end[1]) + end[2] * offset;
-        let (start, end) = (across(from), across(to));
+        let start = (from[0] - slope * from[1]) + from[2] * offset;
+        let end = (to[0] - slope * to[1]) + to[2] * offset;
         let (at, crosses) = along(l, start, end);
         let depth = from[2] + (to[2] - from[2]) * at;
         let level = (r.y - r.anchor[1]) * r.inverse;

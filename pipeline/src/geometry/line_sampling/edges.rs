@@ -127,19 +127,18 @@ impl LineCasters {
         }
     }
 
-    /// Edges that may be met on the way to the light whose hull has these `corners`: those
-    /// with facets not all before or all behind all of it. `slack` is what counts as neither.
-    pub fn candidates(&self, corners: &[DVec3], slack: f64) -> Vec<ContourEdge> {
-        let sides: Vec<i8> = self
-            .planes
-            .iter()
-            .map(|p| side(p, corners, slack))
-            .collect();
-        let may = |e: &&ContourEdge| {
+    /// Numbers of the edges that may be met on the way to the light whose hull has these
+    /// `corners`: those with facets not all before or all behind all of it. `slack` is what
+    /// counts as neither.
+    pub fn candidates(&self, corners: &[DVec3], slack: f64) -> Vec<u32> {
+        let side = |p: &Plane| side(p, corners, slack);
+        let sides: Vec<i8> = self.planes.iter().map(side).collect();
+        let may = |e: &ContourEdge| {
             let [a, b] = e.patches;
             b == NONE || sides[a as usize] == 0 || sides[a as usize] != sides[b as usize]
         };
-        self.edges.iter().filter(may).copied().collect()
+        let numbers = 0..self.edges.len() as u32;
+        numbers.filter(|k| may(&self.edges[*k as usize])).collect()
     }
 }
 

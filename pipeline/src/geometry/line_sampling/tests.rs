@@ -177,7 +177,11 @@ fn lists_leave_out_what_is_irrelevant() {
         let size = [48, 36];
         let blocks = BlockBounds::new(&scene.camera, size, lined.surfaces.corners());
         let corners = lined.light.corners(1.0);
-        let edges = lined.casters.candidates(&corners, 1e-5);
+        let numbers = lined.casters.candidates(&corners, 1e-5);
+        let edges: Vec<_> = numbers
+            .iter()
+            .map(|k| lined.casters.edges[*k as usize])
+            .collect();
         let culling = Culling::new(&edges, &lined.casters.planes, &lined.light);
         let lists = culling.lists(&blocks);
         let alone = rayon::ThreadPoolBuilder::new()

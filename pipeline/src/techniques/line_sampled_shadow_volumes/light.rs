@@ -201,22 +201,29 @@ impl Work {
                 lists,
             };
         };
-        let edges = match frame.settings.skip {
-            true => candidates(frame, casters, light),
-            false => casters.edges.clone(),
-        };
-        let lists = Culling::new(&edges, &casters.planes, light).lists(&frame.blocks);
+        let numbers = candidates(frame, casters, light);
+        let edges = numbers.iter().map(|k| casters.edges[*k as usize]);
+        let edges: Vec<ContourEdge> = edges.collect();
+        let mut lists = Culling::new(&edges, &casters.planes, light).lists(&frame.blocks);
+        if frame.settings.skip {
+            return Self { edges, lists };
+        }
+        for entry in &mut lists.entries {
+            *entry = numbers[*entry as usize];
+        }
+        let edges = casters.edges.clone();
         Self { edges, lists }
     }
 }
 
-fn candidates(frame: &LineFrame<'_>, casters: &LineCasters, light: &LineLight) -> Vec<ContourEdge> {
+/// Numbers of the edges that may be contours before the light for anything.
+fn candidates(frame: &LineFrame<'_>, casters: &LineCasters, light: &LineLight) -> Vec<u32> {
     let centre = light.frame.centre;
     let blocks = frame.blocks.bounds.iter().filter(|b| !b.is_empty());
     let nearest = blocks.fold(f64::INFINITY, |least, b| least.min(b.distance(centre)));
     let growth = light.growth(nearest);
     if !growth.is_finite() {
-        return casters.edges.clone();
+        return (0..casters.edges.len() as u32).collect();
     }
     let corners = light.corners(growth);
     let ends = casters.facets.iter().flat_map(|f| f.corners);

@@ -394,6 +394,7 @@ fn check(names: &[&str]) {
 const VOLUMES: [&str; 3] = ["unshadowed", "shadow-volumes", "sampled-shadow-volumes"];
 const WEDGES: [&str; 2] = ["penumbra-wedges", "penumbra-wedges-restructured"];
 const SOFT: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
+const LINES: [&str; 1] = ["line-sampled-shadow-volumes"];
 const MAPS: [&str; 4] = ["shadow-map", "pcf", "pcss", "shadow-maps-n"];
 const MOMENTS: [&str; 4] = ["vsm", "evsm", "msm", "vssm"];
 const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
@@ -409,6 +410,7 @@ fn no_technique_is_left_out() {
         &VOLUMES[..],
         &WEDGES,
         &SOFT,
+        &LINES,
         &MAPS,
         &MOMENTS,
         &BACKPROJECTED,
@@ -437,6 +439,11 @@ fn settings_of_linked_wedges_act_or_are_warned_of() {
 #[test]
 fn settings_of_soft_volumes_act_or_are_warned_of() {
     check(&SOFT);
+}
+
+#[test]
+fn settings_of_lines_act_or_are_warned_of() {
+    check(&LINES);
 }
 
 #[test]

@@ -104,7 +104,11 @@ fn seen_from(light: &LineLight, n: u32, p: DVec3) -> Option<SeenLight> {
             line.left *= scale;
             line.right *= scale;
         }
-        let frame = LightFrame::facing(light.frame.centre, away, None, 0.0);
+        // Along an axis that it is not seen along, as the shader has it.
+        let z = away.normalize();
+        let first = if z.y.abs() < 0.7 { DVec3::Y } else { DVec3::X };
+        let first = z.cross(first);
+        let frame = LightFrame::facing(light.frame.centre, away, Some(first), 0.0);
         return Some(SeenLight { frame, lines });
     }
     let mut frame = light.frame;

@@ -3,6 +3,7 @@
 pub mod comparison;
 pub mod heat;
 pub mod render;
+pub mod stress;
 pub mod tile_traffic;
 pub mod visibility_sum;
 pub mod wedge_work;

@@ -43,6 +43,7 @@ mod soft_shadow_volumes;
 mod soft_stability;
 mod split_buffers;
 mod split_sums;
+mod stress;
 mod subdivision;
 mod technique_determinism;
 mod views;

@@ -2,8 +2,8 @@
 //! visibility outside 0..=1, no saturation that nothing tells of, and skipping that
 //! stays invisible.
 //!
-//! Hundreds of small frames; how errors grow with scale and offset is measured by
-//! the example `breakdown`.
+//! Hundreds of small frames; how errors grow is measured by `gnomon stress` and held by
+//! the module `stress`.
 
 use glam::DVec3;
 use gnomon_pipeline::geometry::area_light::AreaLight;

@@ -249,6 +249,8 @@ fn three_bytes(words: &[u32; SIDE]) -> [[u8; 3]; SIDE] {
 }
 
 /// Shows the texels of an image row by row; `texels` gives the bytes of row `y` of a block.
+/// All of a block is read at once: blocks lie far apart, so that its rows would be misses of
+/// the cache one by one.
 #[inline(always)]
 fn read_rows<const N: usize>(
     layout: &Layout,
@@ -256,14 +258,19 @@ fn read_rows<const N: usize>(
     texels: impl Fn(usize, usize) -> [[u8; N]; SIDE],
 ) {
     let blocks = layout.width.div_ceil(BLOCK) as usize;
-    let mut row = vec![[[0; N]; SIDE]; blocks];
-    for y in 0..layout.height {
+    let mut rows = vec![[[0; N]; SIDE]; SIDE * blocks];
+    for y in 0..layout.height.div_ceil(BLOCK) {
         for x in 0..blocks {
-            let block = layout.block_index(x as u32, y / BLOCK);
-            row[x] = texels(block, y as usize % SIDE);
+            let block = layout.block_index(x as u32, y);
+            for r in 0..SIDE {
+                rows[r * blocks + x] = texels(block, r);
+            }
         }
-        let row = &row.as_flattened()[..layout.width as usize];
-        visit(row.as_flattened());
+        let shown = (layout.height - y * BLOCK).min(BLOCK) as usize;
+        for row in rows.chunks_exact(blocks).take(shown) {
+            let row = &row.as_flattened()[..layout.width as usize];
+            visit(row.as_flattened());
+        }
     }
 }
 

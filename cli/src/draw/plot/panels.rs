@@ -14,6 +14,8 @@ const AREA: [f32; 2] = [348.0, 110.0];
 const ACROSS: usize = 4;
 /// Above a panel's area: its name.
 const HEAD: f32 = LINE_HEIGHT + 6.0;
+/// Between panels: half a label of the one and of the other.
+const BESIDE: f32 = 64.0;
 /// Ticks of a narrow axis.
 const MOST_TICKS: usize = 5;
 /// Under the last row: ticks, and what is along the axis.
@@ -86,7 +88,7 @@ impl Plot {
     fn size(&self) -> [f32; 2] {
         let [columns, rows] = [self.columns as f32, self.rows as f32];
         [
-            LEFT + columns * (AREA[0] + GAP),
+            LEFT + columns * (AREA[0] + BESIDE),
             TOP + rows * (AREA[1] + HEAD) + FOOT,
         ]
     }
@@ -95,7 +97,7 @@ impl Plot {
     fn corner(&self, number: usize) -> [f32; 2] {
         let [column, row] = [number % self.columns, number / self.columns];
         [
-            LEFT + column as f32 * (AREA[0] + GAP),
+            LEFT + column as f32 * (AREA[0] + BESIDE),
             TOP + HEAD + row as f32 * (AREA[1] + HEAD),
         ]
     }

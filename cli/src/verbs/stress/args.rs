@@ -34,7 +34,7 @@ pub(crate) struct StressArgs {
     /// Image size in pixels
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "120x80")]
     pub(crate) size: [u32; 2],
-    /// Folder for stress.csv, stress.json and a plot for each axis
+    /// Folder for stress.md, stress.csv, stress.json and a plot for each axis
     #[arg(long, value_name = "DIR", default_value = "out/stress")]
     pub(crate) out_dir: PathBuf,
     /// How to execute.

@@ -5,6 +5,7 @@ mod charts;
 mod csv;
 mod document;
 mod job;
+mod record;
 mod run;
 mod text;
 

@@ -6,7 +6,7 @@ use gnomon_pipeline::techniques::Registry;
 use super::args::StressArgs;
 use super::document::StressDocument;
 use super::job::StressJob;
-use super::{charts, csv, text};
+use super::{charts, csv, record, text};
 use crate::draw::plot;
 use crate::error::CliError;
 use crate::output;
@@ -53,6 +53,11 @@ fn write(
     let mut outputs = vec![
         ("table", "stress.csv".to_owned(), csv::write(curves)),
         ("document", "stress.json".to_owned(), json + "\n"),
+        (
+            "record",
+            "README.md".to_owned(),
+            record::write(args, curves),
+        ),
     ];
     for curve in curves {
         let svg = plot::panels_svg(&charts::of_curve(&args.scene, curve));

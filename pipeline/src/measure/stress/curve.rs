@@ -111,9 +111,9 @@ pub enum Outcome {
 /// A picture beside the truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Root mean square of the error of visibility.
+    /// Root mean square of the error of visibility; NaN where nothing can be compared.
     pub rmse: f64,
-    /// Its largest magnitude.
+    /// Its largest magnitude, or NaN.
     pub max: f64,
     /// Share of pixels with surfaces that picture and truth have in common.
     pub compared: f64,
@@ -199,9 +199,9 @@ fn compare(done: &Rendered, truth: &Reference) -> Result<Outcome, String> {
     let insane = done.depth.iter().zip(&done.visibility);
     let insane = insane.filter(|(d, v)| **d < 1.0 && !(0.0..=1.0).contains(*v));
     Ok(Outcome::Measured(Measured {
-        rmse: all.rmse,
-        max: all.max,
-        compared: all.pixels as f64 / surfaces.max(1) as f64,
+        rmse: error.all.map_or(f64::NAN, |e| e.rmse),
+        max: error.all.map_or(f64::NAN, |e| e.max),
+        compared: error.all.map_or(0, |e| e.pixels) as f64 / surfaces.max(1) as f64,
         insane: insane.count(),
         warnings: done.warnings.iter().map(|w| w.code).collect(),
     }))

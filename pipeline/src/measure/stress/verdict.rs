@@ -11,6 +11,9 @@ pub struct Limit {
     pub times: f64,
     /// And so much more: what pictures of few pixels differ by.
     pub plus: f64,
+    /// Share of the pixels that were compared at rest and must be here, too: an error that is
+    /// seen on few pixels says little.
+    pub compared: f64,
 }
 
 impl Default for Limit {
@@ -18,6 +21,7 @@ impl Default for Limit {
         Self {
             times: 1.25,
             plus: 1e-3,
+            compared: 0.75,
         }
     }
 }
@@ -42,6 +46,15 @@ pub enum End {
         /// The error.
         rmse: f64,
         /// Warnings that are not given at rest: the picture is not wrong in silence.
+        warnings: Vec<&'static str>,
+    },
+    /// Picture and truth show other surfaces on too many pixels.
+    Apart {
+        /// The value.
+        at: f64,
+        /// Share of pixels that can be compared.
+        compared: f64,
+        /// Warnings that are not given at rest.
         warnings: Vec<&'static str>,
     },
     /// Nothing is drawn there, and it is said why.
@@ -142,7 +155,10 @@ impl Verdict {
     /// Whether the picture gets worse somewhere without a word.
     #[must_use]
     pub fn is_silent(&self) -> bool {
-        let silent = |e: &End| matches!(e, End::Worse { warnings, .. } if warnings.is_empty());
+        let silent = |e: &End| match e {
+            End::Worse { warnings, .. } | End::Apart { warnings, .. } => warnings.is_empty(),
+            End::Throughout | End::Refused { .. } => false,
+        };
         self.ends.iter().any(silent)
     }
 }
@@ -155,18 +171,22 @@ fn end(value: f64, outcome: &Outcome, rest: &Measured, limit: Limit) -> Option<E
             at: value,
             reason: reason.clone(),
         }),
-        Outcome::Measured(m) => {
-            let most = limit.most(rest.rmse);
-            let new = m.warnings.iter().filter(|w| !rest.warnings.contains(w));
-            // Also where it is no number.
-            let is_worse = !(m.rmse <= most);
-            is_worse.then(|| End::Worse {
-                at: value,
-                rmse: m.rmse,
-                warnings: new.copied().collect(),
-            })
-        }
+        Outcome::Measured(m) => picture_end(value, m, rest, limit),
     }
+}
+
+fn picture_end(at: f64, m: &Measured, rest: &Measured, limit: Limit) -> Option<End> {
+    let new = m.warnings.iter().filter(|w| !rest.warnings.contains(w));
+    let warnings = new.copied().collect();
+    let (rmse, compared) = (m.rmse, m.compared);
+    if compared < rest.compared * limit.compared || rmse.is_nan() {
+        return Some(End::Apart {
+            at,
+            compared,
+            warnings,
+        });
+    }
+    (rmse > limit.most(rest.rmse)).then_some(End::Worse { at, rmse, warnings })
 }
 
 impl fmt::Display for Verdict {
@@ -188,11 +208,22 @@ impl fmt::Display for Verdict {
             match end {
                 End::Throughout => {}
                 End::Worse { at, rmse, warnings } => {
-                    let told = match warnings.is_empty() {
-                        true => "in silence".to_owned(),
-                        false => format!("warned: {}", warnings.join(", ")),
-                    };
-                    write!(f, "; {} at {} ({told})", short(*rmse), short(*at))?;
+                    write!(
+                        f,
+                        "; {} at {} ({})",
+                        short(*rmse),
+                        short(*at),
+                        told(warnings)
+                    )?;
+                }
+                End::Apart {
+                    at,
+                    compared,
+                    warnings,
+                } => {
+                    let share = short(100.0 * compared);
+                    write!(f, "; {share} % of pixels show the same at {}", short(*at))?;
+                    write!(f, " ({})", told(warnings))?;
                 }
                 End::Refused { at, reason } => write!(f, "; refused at {}: {reason}", short(*at))?,
             }
@@ -201,6 +232,13 @@ impl fmt::Display for Verdict {
             0 => Ok(()),
             n => write!(f, "; {n} pixels are no visibility"),
         }
+    }
+}
+
+fn told(warnings: &[&str]) -> String {
+    match warnings.is_empty() {
+        true => "in silence".to_owned(),
+        false => format!("warned: {}", warnings.join(", ")),
     }
 }
 
@@ -291,5 +329,24 @@ mod tests {
         let nan = Ok(measured(f64::NAN, &[]));
         let curve = curve([flat(), flat(), flat(), nan, flat(), flat()]);
         assert_eq!(Verdict::new(&curve, 0).holds[1], 1.0);
+    }
+
+    #[test]
+    fn errors_of_few_pixels_do_not_hold() {
+        let flat = || Ok(measured(0.01, &[]));
+        let few = |share: f64| match measured(0.0, &["told"]) {
+            Outcome::Measured(m) => Ok(Outcome::Measured(Measured {
+                compared: share,
+                ..m
+            })),
+            other => Ok(other),
+        };
+        let curve = curve([flat(), few(0.74), flat(), few(0.76), few(0.2), flat()]);
+        let verdict = Verdict::new(&curve, 0);
+        assert_eq!(verdict.holds, [1.0, 10.0]);
+        assert!(
+            !verdict.holds_throughout() && !verdict.is_silent(),
+            "{verdict}"
+        );
     }
 }

@@ -2,6 +2,7 @@
 //! binary: it links once.
 
 mod backprojection;
+mod carries;
 mod comparison;
 mod cone_culling;
 mod convolution_hazards;
@@ -27,6 +28,7 @@ mod near_plane;
 mod open_casters;
 mod outlines;
 mod paper3_buffers;
+mod parameter_determinism;
 mod penumbra_wedges;
 mod planar;
 mod polygon_lights;

@@ -47,6 +47,7 @@ mod split_buffers;
 mod split_sums;
 mod subdivision;
 mod technique_determinism;
+mod tile_depths;
 mod views;
 mod visibility_sum;
 mod volumes_in_use;

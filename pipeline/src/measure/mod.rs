@@ -1,5 +1,6 @@
 //! Frames are run here, timed and read back; their traffic and errors are found.
 
+pub mod carries;
 pub mod comparison;
 pub mod heat;
 pub mod render;

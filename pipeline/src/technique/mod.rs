@@ -22,7 +22,7 @@ pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMetho
 pub use param::{Choice, Nested, Number, Param, ParamInfo, Setting, count, join};
 pub use params::{LIGHT_FRAME, Params, SETTING_WITHOUT_EFFECT};
 pub use pass::{DrawRole, Pass, PassRole, Roles, apart};
-pub use wedges::{SceneWedges, WedgeKind};
+pub use wedges::{CarryChannels, SceneWedges, WedgeKind};
 
 use crate::geometry::caster::RefusedCaster;
 use crate::truth::oracle::cache::{CacheWarning, OracleCache};
@@ -94,6 +94,15 @@ pub trait Technique: Sync {
         _scene: &Scene,
         _params: &Params,
     ) -> Result<Option<SceneWedges>, TechniqueError> {
+        Ok(None)
+    }
+
+    /// How the attachments of its wedge passes, which each begin without coverage, are
+    /// shared by coverage and carries; `None` where nothing is carried.
+    ///
+    /// # Errors
+    /// As the frame: settings that rule each other out.
+    fn carry_channels(&self, _params: &Params) -> Result<Option<CarryChannels>, TechniqueError> {
         Ok(None)
     }
 }

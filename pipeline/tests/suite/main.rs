@@ -2,6 +2,7 @@
 //! binary: it links once.
 
 mod backprojection;
+mod carries;
 mod comparison;
 mod cone_culling;
 mod convolution_hazards;
@@ -27,6 +28,7 @@ mod near_plane;
 mod open_casters;
 mod outlines;
 mod paper3_buffers;
+mod parameter_determinism;
 mod penumbra_wedges;
 mod planar;
 mod polygon_lights;
@@ -46,6 +48,7 @@ mod split_sums;
 mod stress;
 mod subdivision;
 mod technique_determinism;
+mod tile_depths;
 mod views;
 mod visibility_sum;
 mod volumes_in_use;

@@ -486,6 +486,27 @@ fn shadows_may_end() {
     }
 }
 
+/// Evaluated or left out, linear or smooth: rays start with what the eye sees of the light.
+#[test]
+fn every_form_starts_with_the_eyes_own_intensity() {
+    for step in [1, 3, 5, 7] {
+        let mut scene = with_sphere(scene("cylinder"), 0.5);
+        let x = -0.2 - 0.35 * f64::from(step);
+        scene.camera = Camera::look_at([x, 0.3, -0.9], [x - 1.0, 0.0, -2.0]);
+        for interpolation in ["interpolation=linear", "interpolation=smoothstep"] {
+            let form = |sides| picture(&scene, ORIGINAL, &[interpolation, sides]).visibility;
+            let cancel = form("side-planes=cancel");
+            for (sides, steps) in [("side-planes=evaluate", 2.5), ("side-planes=naive", 3.5)] {
+                let other = form(sides);
+                let off = |(a, b): (&f32, &f32)| (a - b).abs() > steps / 255.0;
+                let count = cancel.iter().zip(&other).filter(|p| off(*p)).count();
+                let few = cancel.len() / 200;
+                assert!(count <= few, "x = {x}, {interpolation}, {sides}: {count}");
+            }
+        }
+    }
+}
+
 /// The eye moves along a line through a penumbra into the umbra: no jump.
 #[test]
 fn an_eye_may_be_anywhere() {

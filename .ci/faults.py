@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Switches faults on, one after the other, and says which tests see them.
 
-    python3 .ci/faults.py [--list baselines|thesis] [--only N,N] [--folder DIR]
+    python3 .ci/faults.py [--list baselines|thesis|tools] [--only N,N] [--folder DIR]
 
 A copy of the tree gets all faults at once, each behind a number that the environment
 variable GNOMON_FAULT chooses; so it is built once (ten minutes on two cores) and each fault
@@ -11,6 +11,7 @@ The lists are in .ci/fault_lists/, results in docs/testing.md.
 """
 
 import argparse
+import json
 import os
 import re
 import shutil
@@ -21,11 +22,11 @@ import threading
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # beside the lists
-from fault_lists import baselines, thesis  # noqa: E402
+from fault_lists import baselines, thesis, tools  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 SHADERS = "shaders-rs/src/"
-LISTS = {"baselines": baselines.FAULTS, "thesis": thesis.FAULTS}
+LISTS = {"baselines": baselines.FAULTS, "thesis": thesis.FAULTS, "tools": tools.FAULTS}
 FAULTS = [fault for faults in LISTS.values() for fault in faults]
 
 SWITCH = """
@@ -47,26 +48,44 @@ def put_in(folder):
         text = path.read_text()
         if text.count(old) != 1:
             sys.exit(f"fault {number}: {name} has {text.count(old)} times: {old}")
-        home = "crate" if name.startswith(SHADERS) else "gnomon_shaders"
-        path.write_text(text.replace(old, new.replace("FAULT", f"{home}::fault({number})")))
+        path.write_text(text.replace(old, new.replace("FAULT", switch(name, number))))
+
+
+def switch(name, number):
+    """Whether the fault is on, as code in that file."""
+    if name.startswith(SHADERS):
+        return f"crate::fault({number})"
+    if name.startswith("traces/"):  # It knows no shaders; nothing of it is asked often.
+        return f'std::env::var("GNOMON_FAULT").is_ok_and(|n| n == "{number}")'
+    return f"gnomon_shaders::fault({number})"
 
 
 def build(folder):
-    """Builds the tests; gives the two binaries."""
+    """Builds the tests; gives the binaries by package and target."""
     # The program too: with it dependencies have the features that whole builds give them.
-    command = "cargo test -p gnomon-pipeline -p gnomon --lib --test suite --no-run".split()
-    done = subprocess.run(command, cwd=folder, stderr=subprocess.PIPE, text=True)
+    packages = [f"-pgnomon{end}" for end in ("", "-pipeline", "-traces")]
+    targets = "--lib --test suite --test cli --test merging --test difference --bin gnomon".split()
+    command = ["cargo", "test", *packages, *targets, "--no-run", "--message-format=json"]
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode:
         sys.exit(done.stderr)
-    names = re.findall(r"\(([^()]*deps/(?:gnomon_pipeline|suite)-[0-9a-f]+)\)", done.stderr)
-    assert len(names) == 2, done.stderr
-    return sorted((folder / n for n in names), key=lambda p: "suite" in p.name)
+    messages = [json.loads(line) for line in done.stdout.splitlines()]
+    made = [m for m in messages if m.get("executable") and m["profile"]["test"]]
+    package = {str(folder / "cli"): "gnomon", str(folder / "pipeline"): "gnomon-pipeline",
+               str(folder / "traces"): "gnomon-traces"}
+    def key(m):
+        target = m["target"]
+        home = str(Path(m["manifest_path"]).parent)
+        return package[home], "lib" if "lib" in target["kind"] else target["name"]
+    return {key(m): m["executable"] for m in made if "bin" not in m["target"]["kind"]}
 
 
-def first_failure(folder, binary, wanted, number):
+def first_failure(folder, binaries, test, number):
     """The first of the tests that fails, if one does; the rest is not waited for."""
+    package, target, wanted = test
     environment = {**os.environ, "GNOMON_FAULT": str(number)}
-    running = subprocess.Popen([binary, wanted], cwd=folder / "pipeline", env=environment,
+    home = folder / {"gnomon": "cli"}.get(package, package.removeprefix("gnomon-"))
+    running = subprocess.Popen([binaries[package, target], wanted], cwd=home, env=environment,
                                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     stop = threading.Timer(900, running.kill)
     stop.start()
@@ -83,12 +102,18 @@ def first_failure(folder, binary, wanted, number):
         running.wait()
 
 
-def failure(folder, binaries, number, tests):
-    """The same of all tests that could see a fault, group by group."""
-    units, suite = binaries
+def tests_of(fault):
+    """Package, target and words of all tests that could see a fault, group by group."""
+    tests = fault[4]
+    if isinstance(tests, list):
+        return tests
     of_suite, beside = tests
-    groups = [(units, w) for w in beside] + [(suite, w) for w in of_suite]
-    found = (first_failure(folder, binary, wanted, number) for binary, wanted in groups)
+    return [("gnomon-pipeline", "lib", w) for w in beside] + [("gnomon-pipeline", "suite", w) for w in of_suite]
+
+
+def failure(folder, binaries, number, tests):
+    """The first that fails of them."""
+    found = (first_failure(folder, binaries, test, number) for test in tests)
     return next((f for f in found if f), None)
 
 
@@ -105,7 +130,7 @@ def groups_of(numbers):
     """Fault 0 for each set of tests in use."""
     seen = []
     for number in numbers:
-        tests = FAULTS[number - 1][4]
+        tests = tests_of(FAULTS[number - 1])
         if tests not in seen:
             seen.append(tests)
     return [(0, tests) for tests in seen]
@@ -125,7 +150,7 @@ def main():
     binaries = build(folder)
     unseen = []
     runs = ([] if 0 in numbers else groups_of(numbers))
-    runs += [(n, FAULTS[n - 1][4] if n else FAULTS[0][4]) for n in numbers]
+    runs += [(n, tests_of(FAULTS[max(n, 1) - 1])) for n in numbers]
     print("| fault | in | a test that fails |\n| ---: | --- | --- |")
     for number, tests in runs:
         failed = failure(folder, binaries, number, tests)

@@ -95,6 +95,33 @@ pub(super) fn columns_of<L: Lanes>(l: L, [low, high]: [I32<L>; 2]) -> U32<L> {
     (high - low).to_u32()
 }
 
+/// The rows that any lane's patch touches, as bits: most patches are as high as one or
+/// two.
+#[inline(always)]
+pub(super) fn rows_in_use<L: Lanes>(l: L, rows: [I32<L>; 2], patch: &Patch<L>) -> u32 {
+    let own = columns_of(l, rows);
+    let own = patch.some.select_u32(own, U32::splat(l, 0)).to_array();
+    let mut all = 0;
+    for lane in own {
+        all |= lane;
+    }
+    all
+}
+
+/// The lowest row that is left, which is taken off.
+#[inline(always)]
+pub(super) fn next_row<'c, L: Lanes>(
+    rest: &mut u32,
+    covered: &'c mut BitRows<L>,
+) -> Option<(usize, &'c mut U32<L>)> {
+    let row = rest.trailing_zeros() as usize;
+    *rest &= rest.wrapping_sub(1);
+    match covered.get_mut(row) {
+        Some(bits) => Some((row, bits)),
+        None => None,
+    }
+}
+
 /// The share of a field of so many bits along a side that is set.
 #[inline(always)]
 pub(super) fn share_of<L: Lanes>(l: L, covered: &BitRows<L>, side: u32) -> F32<L> {
@@ -129,7 +156,8 @@ impl LightCover for BitField {
         );
         let none = U32::splat(l, 0);
         let mask = patch.some.select_u32(columns_of(l, columns), none);
-        for (row, bits) in covered.iter_mut().enumerate().take(self.side as usize) {
+        let mut rest = rows_in_use(l, rows, patch);
+        while let Some((row, bits)) = next_row(&mut rest, covered) {
             let row = I32::splat(l, row as i32);
             let inside = row.ge(rows[0]) & row.lt(rows[1]);
             *bits = *bits | inside.select_u32(mask, none);

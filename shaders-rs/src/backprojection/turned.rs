@@ -2,7 +2,7 @@
 
 use gnomon_raster::{F32, I32, Lanes, U32};
 
-use super::cover::{BitRows, LightCover, MOST_BITS, columns_of, share_of};
+use super::cover::{BitRows, LightCover, MOST_BITS, columns_of, next_row, rows_in_use, share_of};
 use super::patches::Patch;
 use crate::bounded::bounded_uniforms;
 use crate::vector::each2;
@@ -63,7 +63,9 @@ impl LightCover for TurnedBits {
             |k| (patch.y[k].clamp(-1.0, 1.0) + 1.0) * cells,
         );
         let none = U32::splat(l, 0);
-        for (row, bits) in covered.iter_mut().enumerate().take(self.side as usize) {
+        let rows = [y[0].floor().to_i32(), y[1].ceil().to_i32()];
+        let mut rest = rows_in_use(l, rows, patch);
+        while let Some((row, bits)) = next_row(&mut rest, covered) {
             let [low, high] = each2(
                 #[inline(always)]
                 |k| self.column_at_x(row, x[k]),

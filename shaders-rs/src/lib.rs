@@ -174,6 +174,8 @@ stages! {
             "backprojection.area-sum" 1,
         shadow_maps::Shadow<backprojection::Backprojection<backprojection::cover::BitField>>:
             "backprojection.bit-field" 1,
+        shadow_maps::Shadow<backprojection::Backprojection<backprojection::turned::TurnedBits>>:
+            "backprojection.turned-bits" 1,
         shadow_rays::ShadowRays: "shadow-rays" 1,
         planar_shadows::PlanarShadow: "planar-shadows" 1,
         shadow_maps::Shadow<moments::occluder_plane::OccluderPlane>: "moments.occluder-plane" 1,
@@ -192,6 +194,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 67);
+        assert_eq!(table.fragment_shaders().count(), 68);
     }
 }

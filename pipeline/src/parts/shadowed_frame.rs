@@ -254,6 +254,7 @@ impl<'a> ShadowedFrame<'a> {
             warnings: self.notes.warnings,
             casters: self.notes.casters,
             figures: self.notes.figures,
+            keep: Vec::new(),
         })
     }
 }

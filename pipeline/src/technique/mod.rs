@@ -8,6 +8,7 @@ mod capabilities;
 mod condition;
 mod domain;
 mod frame;
+mod kept;
 mod param;
 mod params;
 mod pass;
@@ -19,6 +20,7 @@ pub use capabilities::{Capabilities, LightKinds, ShadowKind, Source, WedgeUse};
 pub use condition::{Condition, LightFact};
 pub use domain::{Decimals, Domain, Value, Whole};
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
+pub use kept::{KeptPictures, PictureKey, PictureToKeep};
 pub use param::{Choice, Nested, Number, Param, ParamInfo, Setting, count, join};
 pub use params::{LIGHT_FRAME, Params, SETTING_WITHOUT_EFFECT};
 pub use pass::{DrawRole, Pass, PassRole, Roles, apart};
@@ -58,6 +60,21 @@ pub trait Technique: Sync {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError>;
+
+    /// The same frame after another one of an animation, of which `kept` holds what it
+    /// asked to keep: bits are those of [`Technique::frame`], draws may be fewer.
+    ///
+    /// # Errors
+    /// As the frame.
+    fn frame_after(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        _kept: &KeptPictures,
+    ) -> Result<Frame, TechniqueError> {
+        self.frame(scene, size, params)
+    }
 
     /// The image on the rectangle lights of its frame, which the truth about them has
     /// too; `None` for lights of one colour.

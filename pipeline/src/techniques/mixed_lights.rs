@@ -20,8 +20,8 @@ use crate::parts::casters::SKIP;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::visibility::{attachment, binding, full_screen};
 use crate::technique::{
-    Capabilities, Condition, Frame, Nested, Param, ParamInfo, Params, PassRole, ShadowKind, Source,
-    Technique, TechniqueError, Warning,
+    Capabilities, Condition, Frame, Nested, Param, ParamInfo, Params, PassRole, PictureToKeep,
+    ShadowKind, Source, Technique, TechniqueError, Warning,
 };
 use crate::techniques::find;
 use crate::world::scene::Scene;
@@ -275,6 +275,11 @@ fn joined(mut frame: Frame, second: Frame) -> Frame {
     frame.roles.push(PassRole::AddPicture, Vec::new());
     frame.warnings.extend(second.warnings);
     frame.casters.extend(second.casters);
+    let keep = second.keep.into_iter().map(|picture| PictureToKeep {
+        texture: moved(picture.texture),
+        ..picture
+    });
+    frame.keep.extend(keep);
     for mut figure in second.figures {
         figure.name += " (rest)";
         frame.figures.push(figure);

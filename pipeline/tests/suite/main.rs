@@ -10,6 +10,8 @@ mod convolution_soft_shadows;
 mod convolution_tables;
 mod coverage_identity;
 mod data_meshes;
+mod deferred_colors;
+mod deferred_kept;
 mod deferred_shaders;
 mod deferred_shadowing;
 mod drawing;

@@ -12,7 +12,9 @@
 //! go either way.
 
 mod hierarchy;
+mod split;
 mod textures;
+mod triangles;
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};

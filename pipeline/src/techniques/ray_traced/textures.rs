@@ -5,7 +5,8 @@ use gnomon_raster::{
 };
 use gnomon_shaders::shadow_rays::Table;
 
-use super::hierarchy::{self, Node, Triangle};
+use super::hierarchy::{self, Node};
+use super::triangles::Triangle;
 use crate::parts::view::View;
 use crate::technique::TechniqueError;
 use crate::world::light::HardLight;

@@ -112,6 +112,9 @@ pub(crate) struct Looked {
     pub(crate) textures: Vec<TextureBinding>,
     /// Numbers that were chosen for the view: of several, the least is reported.
     pub(crate) figures: Vec<(&'static str, f64)>,
+    /// What was found amiss: code, what it is, and what can be done; the views of a light
+    /// are counted.
+    pub(crate) warnings: Vec<[&'static str; 3]>,
 }
 
 impl From<FragmentStage> for Looked {
@@ -121,6 +124,7 @@ impl From<FragmentStage> for Looked {
             stage,
             textures: Vec::new(),
             figures: Vec::new(),
+            warnings: Vec::new(),
         }
     }
 }
@@ -293,6 +297,7 @@ impl OneLight<'_> {
                     share: 1.0 / sources.lights.len() as f32,
                 });
                 views.add_figures(&looked.figures);
+                views.add_warnings(&looked.warnings);
                 let prefilter = looked.prefilter.into_iter();
                 passes.extend(prefilter.map(|p| Pass::new(PassRole::Prefilter, p)));
                 let draw = self.draw(looked.stage, looked.textures, sources.blend);

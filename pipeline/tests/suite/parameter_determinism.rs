@@ -6,6 +6,8 @@
 //! two GPUs that differ in threads, tile and SIMD level at once, and everything that it
 //! leaves is compared: all textures, and with equal skipping all counters.
 
+use std::cell::LazyCell;
+
 use gnomon_pipeline::technique::{
     Condition, Domain, LightFact, ParamInfo, Params, Technique, Whole,
 };
@@ -131,8 +133,9 @@ impl Matrix<'_> {
 
     fn draw(&mut self, settings: &Settings, scene: &Scene) {
         let text: Vec<String> = settings.iter().map(|(k, v)| format!("{k}={v}")).collect();
-        let params = Params::parse(self.technique, &text).unwrap();
-        let frame = match self.technique.frame(scene, SIZE, &params) {
+        let frame = Params::parse(self.technique, &text)
+            .and_then(|params| self.technique.frame(scene, SIZE, &params));
+        let frame = match frame {
             Ok(frame) => frame,
             Err(error) => return self.refused.push(format!("{text:?}: {error}")),
         };
@@ -239,6 +242,7 @@ fn asks(condition: &Condition, of: &Condition) -> bool {
 fn check(names: &[&str], limits: &[(&str, u64)]) {
     let known = scenes();
     let [two, ball, open] = [0, 1, 3].map(|k| known[k].clone());
+    let sky = LazyCell::new(under_sky);
     for name in names {
         let technique = find(name).unwrap();
         let in_base = base(technique).into_iter();
@@ -263,7 +267,7 @@ fn check(names: &[&str], limits: &[(&str, u64)]) {
                 scenes.push(open.clone());
             }
             if asks(&info.applies, &Condition::Environment) || *name == settings_effect::DEFERRED {
-                scenes = vec![under_sky()];
+                scenes = vec![sky.clone()];
             }
             matrix.check(info, &scenes);
         }

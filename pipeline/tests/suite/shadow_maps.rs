@@ -263,6 +263,33 @@ fn one_tap_is_the_shadow_map_to_the_bit() {
     }
 }
 
+/// A smooth kernel blurs a shadow and does not move it: its centroid is that of single
+/// texels, to a tenth of a pixel, where half a texel is half a pixel and more.
+#[test]
+fn bicubic_kernels_are_centred_on_the_receiver() {
+    let scene = scene("parallel-plates");
+    let centroid = |set: &[&str]| {
+        let picture = by("pcf", &scene, set);
+        let (mut sum, mut moments) = (0.0, [0.0; 2]);
+        for (i, v) in picture.visibility.iter().enumerate() {
+            let dark = if v.is_nan() { 0.0 } else { 1.0 - f64::from(*v) };
+            let (x, y) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+            sum += dark;
+            moments = [
+                moments[0] + dark * f64::from(x),
+                moments[1] + dark * f64::from(y),
+            ];
+        }
+        moments.map(|m| m / sum)
+    };
+    let [bicubic, single] =
+        ["kernel=bicubic", "taps=1"].map(|kernel| centroid(&[kernel, "map-size=16", "bias=0.01"]));
+    for k in 0..2 {
+        let off = bicubic[k] - single[k];
+        assert!(off.abs() < 0.25, "{bicubic:?} {single:?}");
+    }
+}
+
 /// Whatever the scene: no NaN, nothing outside 0..=1, surfaces where there are some.
 #[test]
 fn odd_scenes_stay_sane() {

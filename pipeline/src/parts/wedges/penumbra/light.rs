@@ -193,7 +193,7 @@ mod tests {
     fn a_disc_lies_in_the_polygon_of_its_corners_and_touches_it() {
         let shape = LightShape::Disc {
             centre: DVec3::new(1.0, 3.0, -2.0),
-            normal: DVec3::new(0.3, -1.0, 0.2),
+            normal: DVec3::new(0.3, -1.0, 0.2).normalize(),
             radius: 0.7,
         };
         let light = Light {

@@ -109,6 +109,12 @@ const FALLOFF: Param<f64> = Param::decimal(
 )
 .when(Condition::Not("a", &["0"]));
 
+const PLANE_OFFSET: Param<bool> = Param::switch(
+    "plane-offset",
+    true,
+    "lessen receivers' depths by what their planes gain over a kernel; off: as in the paper",
+);
+
 const ITERATE: Param<u32> = Param::<u32>::whole(
     "iterate",
     0,
@@ -166,6 +172,7 @@ pub(super) struct Settings {
     /// `None`: by the light's sides.
     pub(super) probes: Option<u32>,
     pub(super) skip: bool,
+    pub(super) plane_offset: bool,
     pub(super) horizon: bool,
     pub(super) frame: FrameSettings,
 }
@@ -186,6 +193,7 @@ impl Settings {
         THRESHOLD.info,
         MIP_SHARPER.info,
         PROBES.info,
+        PLANE_OFFSET.info,
         HORIZON.info,
         SKIP.info,
     ];
@@ -208,6 +216,7 @@ impl Settings {
             sharper: params.get(&MIP_SHARPER)?,
             probes: params.get(&PROBES)?,
             skip: params.get(&SKIP)?,
+            plane_offset: params.get(&PLANE_OFFSET)?,
             horizon: params.get(&HORIZON)?,
             frame: FrameSettings::read(params)?,
         })

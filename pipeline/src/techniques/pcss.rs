@@ -168,7 +168,6 @@ impl Technique for Pcss {
         let search = settings.points(settings.search, 0);
         let filter = settings.points(settings.filter, 1);
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,

@@ -102,9 +102,8 @@ impl Technique for DeferredShadowing {
         match environment.filter(|_| settings.frame.light.is_none()) {
             None => distant::frame(scene, size, &settings),
             Some(placed) => {
-                let mut dark = scene.clone();
-                dark.ambient = [0.0; 3]; // the residual is in L_s
-                environment::frame(&dark, placed, size, &settings)
+                // The residual is in L_s.
+                environment::frame(&scene.without_ambient(), placed, size, &settings)
             }
         }
     }

@@ -72,7 +72,7 @@ impl Sky {
             },
             colour: sample.energy.map(|e| (e / std::f64::consts::PI) as f32),
         };
-        let directions = samples(&self.map.cube, count, SEED);
+        let directions = samples(&self.map.source, count, SEED);
         scene.lights = directions.into_iter().map(light).collect();
         scene.ambient = [0.0; 3];
         scene

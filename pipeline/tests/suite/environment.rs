@@ -46,7 +46,7 @@ fn scored(
 }
 
 fn reference(scene: &Scene, count: usize, seed: u64) -> EnvironmentReference {
-    let map = &scene.environment.as_ref().unwrap().map.cube;
+    let map = &scene.environment.as_ref().unwrap().map;
     let directions = Directions { count, seed };
     EnvironmentReference::new(scene, map, [64, 48], directions, true, &|| {})
 }

@@ -21,10 +21,9 @@
 //! * Discs, spheres and polygons are squares of their area, and parallelograms that are no
 //!   rectangles the rectangles about them, which is said.
 //! * Receivers' depths are lessened by what their planes gain over a kernel, and limited by
-//!   their horizon (`plane-offset=off`, `horizon=off`: the paper's form).
+//!   their horizon (`plane-offset=0`, `horizon=off`: the paper's form).
 
 mod images;
-mod needed;
 mod prefilter;
 mod settings;
 #[cfg(test)]
@@ -45,7 +44,6 @@ use gnomon_shaders::convolution::visibility::{ConvolutionShadow, PlaneOffset, Sh
 use gnomon_shaders::transform::FullScreen;
 
 use self::images::{BasisTextures, filtered};
-use self::needed::Needed;
 use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
 use crate::param_list;
@@ -98,7 +96,7 @@ impl Technique for ConvolutionSoftShadows {
         let settings = Settings::read(params)?;
         let frame = ShadowedFrame::new(scene, size, &settings.frame)?;
         let frame = frame.with_horizon(settings.horizon, false);
-        let (mut frame, positions) = match settings.plane_offset {
+        let (mut frame, positions) = match settings.plane_offset > 0.0 {
             true => frame.with_positions_and_planes()?,
             false => frame.with_positions()?,
         };
@@ -232,11 +230,6 @@ impl Shadows<'_> {
         label: &dyn Fn(&str) -> String,
     ) -> (Vec<Pass>, Draw) {
         let settings = &self.settings;
-        let reads = fitted.reads(&self.around, light.extent);
-        let needed = match reads.filter(|_| settings.skip) {
-            Some(reads) => Needed::of(&reads, settings.side, settings.filter),
-            None => Needed::all(settings.side),
-        };
         let picture = fitted.pass(
             label("light view"),
             geometry,
@@ -249,7 +242,6 @@ impl Shadows<'_> {
             settings,
             images: &self.images,
             view: self.map.depth,
-            needed: &needed,
         };
         let (passes, images) = prefilter.passes(label);
         let filtered = |pass| Pass::new(PassRole::Prefilter, pass);
@@ -363,21 +355,19 @@ impl Shadows<'_> {
                 strength: settings.strength,
                 falloff: settings.falloff,
             },
-            plane_offset: settings.plane_offset.then(|| PlaneOffset {
+            plane_offset: (settings.plane_offset > 0.0).then(|| PlaneOffset {
                 planes: fitted.planes(),
-                first: FIRST_SHARE,
-                last: LAST_SHARE,
+                first: settings.plane_offset * FIRST_SHARE,
+                last: settings.plane_offset,
                 most: MOST_OFFSET,
             }),
         }
     }
 }
 
-/// Share of what a receiver's plane gains over half a kernel that its depth is lessened
-/// by, where the average depth of blockers is looked for.
-const FIRST_SHARE: f32 = 0.25;
-/// The same for visibility.
-const LAST_SHARE: f32 = 0.5;
+/// Where the average depth of blockers is looked for, receivers' depths are lessened by
+/// this share of what they are for visibility.
+const FIRST_SHARE: f32 = 0.5;
 /// Largest offset of a receiver's depth, over the light view's range: beyond, blockers
 /// come near the other half of the series' period.
 const MOST_OFFSET: f32 = 0.2;

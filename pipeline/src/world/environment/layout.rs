@@ -92,6 +92,11 @@ impl Picture {
         self.size[0] / columns
     }
 
+    /// Whether texels of faces of `side` texels are made of whole ones.
+    pub(super) fn is_cube_of(&self, side: usize) -> bool {
+        matches!(self.layout, Layout::Cube(..)) && self.face_side().is_multiple_of(side)
+    }
+
     /// Whether texels are hardly square: the smallest maps of the sphere.
     pub(super) fn is_coarse(&self) -> bool {
         self.layout == Layout::LatitudeLongitude && self.size[0] < 16

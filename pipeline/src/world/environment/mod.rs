@@ -226,7 +226,7 @@ mod tests {
         ];
         assert_eq!(codes, expected);
         let brightest = mended.cube.radiance().fold(0.0, |m, rgb| rgb[0].max(m));
-        assert!((brightest - 7.0).abs() < 1e-9, "{brightest}");
+        assert!((brightest - 7.0).abs() < 1e-2, "{brightest}");
     }
 
     /// The cube, in whole units, has the energy of the file at any turn.

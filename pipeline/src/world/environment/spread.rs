@@ -12,8 +12,9 @@ use super::layout::{Picture, Place, turned};
 use crate::world::shape::on_circle;
 
 /// Parts along a side of a texel of the cube, at least.
-const PARTS: usize = 4;
-/// Times that shares are fitted; what is uneven falls below a hundredth at once.
+const PARTS: usize = 8;
+/// Times that shares are fitted. An even map of 1024 texels round is then even to 2 % (RMS)
+/// on faces of 128, where shares as they fall are off by 6 %.
 const ROUNDS: usize = 4;
 
 /// Energy of every texel of a cube, face after face, row by row: radiance times
@@ -67,8 +68,12 @@ struct Parts {
 
 impl Parts {
     fn new(picture: &Picture, side: usize, turn: f64) -> Self {
-        let finer = if picture.is_coarse() { 8 } else { 1 };
-        let along = (PARTS * side).div_ceil(picture.side()).max(1) * finer;
+        let along = if turn == 0.0 && picture.is_cube_of(side) {
+            1
+        } else {
+            let finer = if picture.is_coarse() { 8 } else { 1 };
+            (PARTS * side).div_ceil(picture.side()).max(1) * finer
+        };
         let angle = on_circle(turn.to_radians());
         let middle = |k: usize| (k as f64 + 0.5) / along as f64;
         let places = picture.places();
@@ -136,20 +141,20 @@ mod tests {
         faces.energy[i].map(|e| e / texel_angle(faces.side, i))
     }
 
-    fn worst(picture: &Picture, most: usize, turn: f64) -> f64 {
+    /// Root of the mean squared error of a cube's radiance.
+    fn error(picture: &Picture, most: usize, turn: f64) -> f64 {
         let faces = spread(picture, most, turn);
         let n = faces.side;
-        let mut worst = 0.0f64;
+        let mut squares = 0.0;
         for i in 0..faces.energy.len() {
             let place = |k: usize| -1.0 + (2.0 * k as f64 + 1.0) / n as f64;
             let d = direction(i / (n * n), [place(i % n), place(i / n % n)]);
             let expected = of_direction(turned(d, on_circle(-turn.to_radians())));
             let found = radiance(&faces, i);
-            for c in 0..3 {
-                worst = worst.max((found[c] - f64::from(expected[c])).abs());
-            }
+            let off = (0..3).map(|c| found[c] - f64::from(expected[c]));
+            squares += off.map(|d| d * d).sum::<f64>();
         }
-        worst
+        (squares / (3 * faces.energy.len()) as f64).sqrt()
     }
 
     fn sphere(width: usize) -> Picture {
@@ -166,10 +171,11 @@ mod tests {
 
     #[test]
     fn directions_survive_the_way_onto_the_cube() {
-        assert!(worst(&sphere(128), 128, 0.0) < 0.05);
-        assert!(worst(&sphere(128), 8, 0.0) < 0.08);
-        assert!(worst(&sphere(128), 32, 90.0) < 0.05);
-        assert!(worst(&sphere(128), 32, 33.0) < 0.05);
+        for (most, turn) in [(128, 0.0), (8, 0.0), (32, 90.0), (32, 33.0)] {
+            let off = error(&sphere(128), most, turn);
+            println!("{most} {turn}: {off:.4}");
+            assert!(off < 0.04, "{most} {turn}: {off}");
+        }
     }
 
     /// Solid angles of all texels are the sphere's, in every layout.

@@ -260,7 +260,8 @@ impl<'a> Fitting<'a> {
             };
             let area = self.grown(self.area_of(seed));
             let (energy, found) = self.take(area);
-            if let Some(moments) = found.moments(area.face, self.settings.form) {
+            if let Some(moments) = found.moments(area.face, self.settings.form == LightForm::Square)
+            {
                 let Area { face, low, high } = area;
                 self.lights.push(AreaFit {
                     face,

@@ -41,6 +41,7 @@ mod layout;
 mod moments;
 mod placed;
 mod read;
+mod settings;
 mod sky;
 mod source;
 mod spread;
@@ -55,6 +56,7 @@ pub use fit::{
 };
 pub use placed::{DISTANCE, PlacedEnvironment};
 pub(in crate::world) use read::decode;
+pub use settings::MapSettings;
 pub use source::MapSource;
 
 use crate::world::files::SceneFolder;
@@ -63,27 +65,6 @@ use layout::Picture;
 
 /// Name of the procedural map, which needs no file.
 pub const SKY: &str = "sky";
-
-/// How a map becomes an environment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapSettings {
-    /// Most texels along a side of a cube face; coarser maps have fewer.
-    pub side: usize,
-    /// Turn about +y in degrees, counter-clockwise seen from above.
-    pub turn: f64,
-    /// Factor of all radiance, above 0.
-    pub brightness: f64,
-}
-
-impl Default for MapSettings {
-    fn default() -> Self {
-        Self {
-            side: 128,
-            turn: 0.0,
-            brightness: 1.0,
-        }
-    }
-}
 
 /// A map, ready to be fitted or sampled.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,22 +143,6 @@ impl Environment {
     /// As [`fit::fit`].
     pub fn fit(&self, settings: &FitSettings) -> Result<Fit, EnvironmentError> {
         fit::fit(&self.name, &self.cube, settings)
-    }
-}
-
-impl MapSettings {
-    fn check(&self) -> Result<(), EnvironmentError> {
-        let bad = |what, value, valid| EnvironmentError::Setting { what, value, valid };
-        if !(1..=1024).contains(&self.side) {
-            return Err(bad("side", self.side as f64, "1 to 1024 texels"));
-        }
-        if !self.turn.is_finite() {
-            return Err(bad("turn", self.turn, "a finite number of degrees"));
-        }
-        if !(self.brightness > 0.0 && self.brightness.is_finite()) {
-            return Err(bad("brightness", self.brightness, "above 0 and finite"));
-        }
-        Ok(())
     }
 }
 

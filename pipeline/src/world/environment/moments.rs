@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::cube::{axes, direction};
-use super::fit::LightForm;
 
 /// Where the luminance of some texels of a face is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,8 +48,8 @@ impl Found {
         }
     }
 
-    /// `None` without any luminance.
-    pub(super) fn moments(&self, face: usize, form: LightForm) -> Option<Moments> {
+    /// `square`: as wide as high. `None` without any luminance.
+    pub(super) fn moments(&self, face: usize, square: bool) -> Option<Moments> {
         if self.weight <= 0.0 {
             return None;
         }
@@ -62,9 +61,9 @@ impl Found {
             let mean = self.place[k] / self.weight;
             3.0 * (self.squares[k] / self.weight - mean * mean).max(0.0) + texel
         });
-        let squared = match form {
-            LightForm::Rectangle => squared,
-            LightForm::Square => [0.5 * (squared[0] + squared[1]); 2],
+        let squared = match square {
+            false => squared,
+            true => [0.5 * (squared[0] + squared[1]); 2],
         };
         Some(Moments {
             centroid: [right, down].map(|axis| self.towards.dot(axis) / ahead),
@@ -81,17 +80,17 @@ mod tests {
     #[test]
     fn even_light_is_as_wide_as_its_texels() {
         let mut found = Found::new(16);
-        assert_eq!(found.moments(2, LightForm::Rectangle), None);
+        assert_eq!(found.moments(2, false), None);
         for (y, x) in (6..10).flat_map(|y| (4..12).map(move |x| (y, x))) {
             found.add(2, [x, y], 7);
         }
-        let Moments { centroid, half } = found.moments(2, LightForm::Rectangle).unwrap();
+        let Moments { centroid, half } = found.moments(2, false).unwrap();
         assert!(centroid.iter().all(|c| c.abs() < 1e-12), "{centroid:?}");
         assert!(
             (half[0] - 0.5).abs() < 1e-12 && (half[1] - 0.25).abs() < 1e-12,
             "{half:?}"
         );
-        let square = found.moments(2, LightForm::Square).unwrap();
+        let square = found.moments(2, true).unwrap();
         let mean = (0.5 * (0.25 + 0.0625f64)).sqrt();
         assert!((square.half[0] - mean).abs() < 1e-12 && square.half[0] == square.half[1]);
     }
@@ -103,7 +102,7 @@ mod tests {
         for (y, x) in (0..8).flat_map(|y| (0..8).map(move |x| (y, x))) {
             found.add(4, [x, y], if [x, y] == [6, 1] { 1_000_000 } else { 1 });
         }
-        let Moments { centroid, half } = found.moments(4, LightForm::Square).unwrap();
+        let Moments { centroid, half } = found.moments(4, true).unwrap();
         assert!((centroid[0] - 0.625).abs() < 1e-3 && (centroid[1] + 0.625).abs() < 1e-3);
         assert!(half[0] < 0.14, "{half:?}");
     }

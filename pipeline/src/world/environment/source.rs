@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::MapSettings;
 use super::layout::{Picture, Place, turned};
+use super::settings::MapSettings;
 use super::spread::{Faces, spread};
 use crate::world::shape::on_circle;
 

@@ -483,7 +483,8 @@ mod tests {
         assert!(refused("first=soft-shadow-volume").contains("did you mean"));
         let deep = format!("rest=mixed-lights{}", ":rest=mixed-lights".repeat(40));
         assert!(refused(&deep).contains("at most 16"));
-        assert!(refused("rest=mixed-lights:first=(pcss").contains("parentheses"));
+        let open = Params::parse(technique, ["rest=mixed-lights:first=(pcss"]).unwrap_err();
+        assert!(open.to_string().contains("parentheses"), "{open}");
         assert!(refused("rest=shadow-volumes:method=zz").contains("auto|zpass|zfail"));
         assert!(refused("light=7").contains("light 7"));
         assert!(refused("choose=0+7").contains("light 7"));

@@ -111,6 +111,7 @@ stages! {
         surface::Lambert: "surface.lambert" 1,
         surface::Phong: "surface.phong" 1,
         surface::AmbientWithPosition: "surface.ambient-with-position" 1,
+        surface::LeaningAmbient: "surface.leaning-ambient" 1,
         surface::FacetValue: "surface.facet-value" 1,
         surface::Shadowed<surface::Lambert>: "surface.shadowed-lambert" 1,
         surface::Shadowed<surface::Phong>: "surface.shadowed-phong" 1,
@@ -144,11 +145,11 @@ stages! {
         convolution::prefilter::LessMean: "convolution.less-mean" 1,
         convolution::prefilter::SumStep: "convolution.sum-step" 1,
         convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>:
-            "convolution.shadow-mipmaps" 1,
+            "convolution.shadow-mipmaps" 2,
         convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>:
-            "convolution.shadow-float-tables" 1,
+            "convolution.shadow-float-tables" 2,
         convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>:
-            "convolution.shadow-integer-tables" 1,
+            "convolution.shadow-integer-tables" 2,
         cones::patches::PatchPicture: "cones.patch-picture" 1,
         cones::bounds::PatchBounds: "cones.patch-bounds" 1,
         cones::ConeShadow<cones::DiscSamples>: "cones.shadow-disc-samples" 1,

@@ -1,7 +1,7 @@
 //! Scenes lit by environments: every technique draws them, the same bits however
 //! they are executed, nearer to the reference the more lights there are.
 
-use crate::drawing::drawn_on;
+use crate::drawing::drawn_by_default;
 use gnomon_pipeline::measure::comparison::{
     Directions, EnvironmentReference, RadianceScore, Reference, ReferenceKind,
 };
@@ -32,7 +32,7 @@ fn lights(count: usize) -> FitSettings {
 }
 
 fn drawn(scene: &Scene, technique: &str, set: &[&str], gpu: GpuConfig) -> Rendered {
-    drawn_on(scene, technique, set, [64, 48], gpu)
+    drawn_by_default(scene, technique, set, [64, 48], gpu)
 }
 
 fn scored(
@@ -46,7 +46,7 @@ fn scored(
 }
 
 fn reference(scene: &Scene, count: usize, seed: u64) -> EnvironmentReference {
-    let map = &scene.environment.as_ref().unwrap().map.cube;
+    let map = &scene.environment.as_ref().unwrap().map;
     let directions = Directions { count, seed };
     EnvironmentReference::new(scene, map, [64, 48], directions, true, &|| {})
 }
@@ -163,6 +163,38 @@ fn fitted_lights_come_near_the_reference() {
     assert!(mean.rmse > 2.0 * few.rmse, "{mean:?}");
     let one = of(&under_sky("creature", lights(1)));
     assert!(one.rmse > 2.0 * few.rmse, "{one:?}");
+}
+
+/// The reference is of the file: the cube that lights are fitted to does not matter, and
+/// what is seen behind the scene is the file too, in the picture as in the reference.
+#[test]
+fn the_reference_is_of_the_map_and_not_of_the_cube() {
+    let open = |side| {
+        let settings = MapSettings {
+            side,
+            ..MapSettings::default()
+        };
+        Environment::open("sky", settings).unwrap()
+    };
+    let scene = under_sky("creature", lights(6));
+    let directions = Directions {
+        count: 256,
+        seed: 1,
+    };
+    let of =
+        |side| EnvironmentReference::new(&scene, &open(side), [64, 48], directions, true, &|| {});
+    let [coarse, fine] = [of(4), of(128)];
+    assert!(coarse == fine);
+    let done = drawn(&scene, "unshadowed", &[], GpuConfig::default());
+    let behind = (0..64 * 48).filter(|i| done.depth[*i] == 1.0);
+    let mut colours = Vec::new();
+    for i in behind {
+        assert_eq!(done.srgb[i], fine.srgb[i], "{i}");
+        colours.push(done.srgb[i]);
+    }
+    colours.sort_unstable();
+    colours.dedup();
+    assert!(colours.len() > 50, "{} colours", colours.len());
 }
 
 /// Two sets of directions agree far better than lights with either.

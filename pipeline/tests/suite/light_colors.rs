@@ -1,7 +1,7 @@
 //! Colours of a light's image, each channel against the truth, in both techniques on soft
 //! shadow volumes.
 
-use crate::drawing::drawn;
+use crate::drawing::{as_published, drawn};
 use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
@@ -18,7 +18,7 @@ const EVEN: [&str; 2] = ["texture-filter=quadlinear", "texture-centred=vertex"];
 fn channels(scene: &Scene, technique: &str, set: &[&str]) -> [Vec<f32>; 3] {
     let seen = drawn(scene, technique, set, SIZE).visibility;
     let technique = find(technique).unwrap();
-    let params = Params::parse(technique, set.iter().copied()).unwrap();
+    let params = Params::parse(technique, as_published(technique).iter().chain(set)).unwrap();
     let frame = technique.frame(scene, SIZE, &params).unwrap();
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
     gpu.load(&frame.recording).unwrap();

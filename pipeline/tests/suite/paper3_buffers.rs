@@ -75,7 +75,8 @@ fn the_umbra_is_in_the_stencil_and_coverage_in_one_texture() {
     assert!(wedges[0].fragment_shader_invocations > 0);
     let [float, bytes] = [&[][..], &["buffer=rgba8"]].map(|set| {
         let technique = find(NAME).unwrap();
-        let params = Params::parse(technique, set).unwrap();
+        let published = ["horizon=off"];
+        let params = Params::parse(technique, published.iter().chain(set)).unwrap();
         let frame = technique.frame(&scene, SIZE, &params).unwrap();
         frame
             .recording
@@ -115,7 +116,7 @@ fn counting_by_depth_is_counting_by_sides() {
 fn copying_back_blends_nothing_and_takes_four_passes_a_wedge() {
     let scene = builtin::build("cylinder").unwrap();
     let technique = find(NAME).unwrap();
-    let params = Params::parse(technique, ["copy-back=on", "wedge=paper3"]).unwrap();
+    let params = Params::parse(technique, ["horizon=off", "copy-back=on", "wedge=paper3"]).unwrap();
     let frame = technique.frame(&scene, SIZE, &params).unwrap();
     let (mut passes, mut wedges) = (0, 0);
     for (number, pass) in frame.recording.list.passes.iter().enumerate() {

@@ -2,6 +2,7 @@
 //! limit, the same buffers whatever is culled and in however many passes, and what
 //! culling saves.
 
+use crate::drawing::as_published;
 use glam::DVec3;
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::measure::tile_traffic::{Measured, TileTraffic, measure};
@@ -31,7 +32,11 @@ fn with_sphere(mut scene: Scene, radius: f64) -> Scene {
 }
 
 fn params(technique: &str, set: &[&str]) -> Params {
-    Params::parse(techniques::find(technique).unwrap(), set).unwrap()
+    let technique = techniques::find(technique).unwrap();
+    let set = as_published(technique)
+        .into_iter()
+        .chain(set.iter().copied());
+    Params::parse(technique, set).unwrap()
 }
 
 fn picture(scene: &Scene, technique: &str, set: &[&str]) -> Rendered {

@@ -83,6 +83,41 @@ fn one_map_is_the_hard_shadow_away_from_edges() {
     }
 }
 
+/// Kernels lie about the receiver, not beside it: the centroid of a shadow of a plate
+/// right below the light is below it too, to a tenth of a texel.
+#[test]
+fn kernels_do_not_move_shadows() {
+    const D: f64 = 4.0;
+    let (scene, _) = plates(D);
+    let rays = scene.camera.eye_rays(SIZE[0], SIZE[1]);
+    for kernel in [
+        &["kernel=bicubic"][..],
+        &["kernel=box", "taps=1"],
+        &["kernel=box", "taps=4"],
+        &["kernel=box", "taps=5"],
+    ] {
+        let set = [kernel, &["map-size=64", "fit=receivers"]].concat();
+        let picture = by("pcf", &scene, &set);
+        let (mut sum, mut dark) = (DVec3::ZERO, 0.0);
+        for (k, seen) in picture.visibility.iter().enumerate() {
+            let place = [k as u32 % SIZE[0], k as u32 / SIZE[0]].map(|c| f64::from(c) + 0.5);
+            let ray = rays.direction(place[0], place[1]);
+            let t = -rays.origin.y / ray.y;
+            // What a pixel covers of the floor grows with the cube of its distance.
+            let hidden = (1.0 - f64::from(*seen)) * t * t * t;
+            sum += (rays.origin + ray * t) * hidden;
+            dark += hidden;
+        }
+        let texel = figure(&picture, "texel");
+        let off = sum / dark / texel;
+        println!("{kernel:?}: texel {texel:.4}, off by {off:.3}");
+        assert!(
+            dark > 0.0 && off.x.abs() < 0.1 && off.z.abs() < 0.1,
+            "{kernel:?}: {off}"
+        );
+    }
+}
+
 /// Whether a shadow map of parallel rays that is right in every texel says so; as
 /// [`mapped`].
 fn mapped_along(

@@ -86,7 +86,7 @@ impl Technique for SoftShadowVolumes {
         let scene = &*settings.covering.lit(scene);
         let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
-        let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
+        let frame = frame.with_horizon(soft.horizon, has_image);
         let (mut frame, positions) = frame.with_positions()?;
         let buffers = Buffers::create(size, &settings, &mut frame.recording)?;
         let mut coverings = Coverings::default();

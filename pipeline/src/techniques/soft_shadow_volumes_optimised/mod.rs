@@ -99,7 +99,7 @@ impl Technique for SoftShadowVolumesOptimised {
         let scene = &*settings.covering.lit(scene);
         let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
-        let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
+        let frame = frame.with_horizon(soft.horizon, has_image);
         let (mut frame, positions) = frame.with_positions()?;
         let depth_stencil = frame.targets.depth_texture();
         let mut buffers = Buffers::create(size, depth_stencil, &settings, &mut frame.recording)?;

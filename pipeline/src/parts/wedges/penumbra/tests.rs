@@ -21,7 +21,7 @@ const SIZE: [u32; 2] = [96, 72];
 /// Depth and light-intensity buffer of a scene's first light.
 fn drawn(scene: &Scene, name: &str, set: &[&str]) -> (Vec<f32>, Vec<f32>) {
     let technique = techniques::find(name).unwrap();
-    let params = Params::parse(technique, set).unwrap();
+    let params = Params::parse(technique, ["horizon=off"].iter().chain(set)).unwrap();
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
     let frame = technique.frame(scene, SIZE, &params).unwrap();
     gpu.load(&frame.recording).unwrap();

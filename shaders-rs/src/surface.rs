@@ -88,23 +88,7 @@ impl FragmentShader for AmbientWithPosition {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         Constant(self.ambient).shade(l, f);
-        let (x, y) = (f.x(), f.y());
-        let rays = &self.rays;
-        let direction = each3(
-            #[inline(always)]
-            |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
-        );
-        let normal = each3(
-            #[inline(always)]
-            |i| f.varying(3 + i),
-        );
-        let slope = dot3(normal, direction);
-        let steep = slope.abs().gt(length(direction) * EDGE_ON);
-        let distance = f.varying(6) / slope;
-        let [px, py, pz] = each3(
-            #[inline(always)]
-            |i| steep.select_f32(direction[i] * distance + rays.eye[i], f.varying(i)),
-        );
+        let (normal, [px, py, pz]) = seen_position(&self.rays, f);
         let w = if self.receives { 1.0 } else { 0.0 };
         f.set_color(1, [px, py, pz, F32::splat(l, w)]);
         if self.plane {
@@ -153,6 +137,45 @@ impl FragmentShader for LeaningAmbient {
             },
         );
         f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+/// The facet's normal, and where the pixel's ray meets it.
+#[inline(always)]
+fn seen_position<L: Lanes>(rays: &PixelRays, f: &Fragment<'_, L>) -> ([F32<L>; 3], [F32<L>; 3]) {
+    let (x, y) = (f.x(), f.y());
+    let direction = each3(
+        #[inline(always)]
+        |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
+    );
+    let normal = each3(
+        #[inline(always)]
+        |i| f.varying(3 + i),
+    );
+    let slope = dot3(normal, direction);
+    let steep = slope.abs().gt(length(direction) * EDGE_ON);
+    let distance = f.varying(6) / slope;
+    let position = each3(
+        #[inline(always)]
+        |i| steep.select_f32(direction[i] * distance + rays.eye[i], f.varying(i)),
+    );
+    (normal, position)
+}
+
+/// As [`AmbientWithPosition`], with the number of the facet, the last varying of
+/// [`crate::transform::NumberedFacets`], for w.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientWithNumber {
+    /// The colour.
+    pub ambient: [f32; 4],
+    /// The camera.
+    pub rays: PixelRays,
+}
+uniforms!(AmbientWithNumber { ambient, rays });
+
+impl FragmentShader for AmbientWithNumber {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        Constant(self.ambient).shade(l, f);
+        let (_, [x, y, z]) = seen_position(&self.rays, f);
+        f.set_color(1, [x, y, z, f.varying(7)]);
     }
 }
 

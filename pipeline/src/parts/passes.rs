@@ -11,8 +11,10 @@ use gnomon_raster::state::{
     StencilOperation, StencilState,
 };
 use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
-use gnomon_shaders::surface::{AmbientWithPosition, Constant, Lambert, LeaningAmbient, Phong};
-use gnomon_shaders::transform::{Facets, Points, Surfaces};
+use gnomon_shaders::surface::{
+    AmbientWithNumber, AmbientWithPosition, Constant, Lambert, LeaningAmbient, Phong,
+};
+use gnomon_shaders::transform::{Facets, NumberedFacets, Points, Surfaces};
 
 use super::frame_settings::{FrameSettings, Shading};
 use super::surface_draw::SurfaceDraw;
@@ -22,7 +24,7 @@ pub use super::view::View;
 use super::visibility::{Positions, VisibilityTexture, attachment, binding};
 use crate::technique::VisibilityOutput;
 use crate::world::mesh::narrow;
-use crate::world::scene::{Material, Scene};
+use crate::world::scene::{Material, Object, Scene};
 
 /// Where a lit pass adds light, and how much of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,6 +184,34 @@ impl<'a> SceneDraws<'a> {
             depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
             draws: self.surfaces.iter().map(draw).collect(),
         })
+    }
+
+    /// Clears and draws as [`Self::ambient_pass_with_positions`], with a number of each
+    /// object's triangles for w of positions.
+    pub(crate) fn ambient_pass_with_numbers(
+        &self,
+        targets: &Targets,
+        positions: &Positions,
+        number: &dyn Fn(&Object, u32) -> f32,
+    ) -> RenderPass {
+        let rays = self.view.pixel_rays();
+        let draw = |s: &SurfaceDraw<'_>| {
+            let ambient = s.ambient(self.scene.ambient);
+            let pipeline = RenderPipeline {
+                label: "ambient".into(),
+                vertex: NumberedFacets(self.view.clip_from_world).stage(),
+                fragment: Some(AmbientWithNumber { ambient, rays }.stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: DepthStencilState::opaque(),
+                color_targets: vec![ColorTargetState::OPAQUE; 2],
+            };
+            s.draw_numbered(&self.view, pipeline, &|t| number(s.object, t))
+        };
+        let mut pass = self.ambient_pass(targets);
+        let clear = LoadOp::Clear([0.0; 4]);
+        pass.color.push(attachment(positions.texture, clear));
+        pass.draws = self.surfaces.iter().map(draw).collect();
+        pass
     }
 
     /// Adds the light of light `light` to what the ambient pass drew.

@@ -29,7 +29,7 @@ use crate::technique::{
     apart,
 };
 use crate::world::light::Light;
-use crate::world::scene::Scene;
+use crate::world::scene::{Object, Scene};
 
 /// What is said of a frame, gathered light after light.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -174,6 +174,22 @@ impl<'a> ShadowedFrame<'a> {
     pub fn with_positions_and_planes(mut self) -> Result<(Self, Positions), TechniqueError> {
         let positions = Positions::with_planes(self.size, &mut self.recording)?;
         Ok(self.with_ambient_and(positions))
+    }
+
+    /// The same, w of positions being what `number` gives to triangles of objects.
+    ///
+    /// # Errors
+    /// The GPU refuses the texture.
+    pub(crate) fn with_numbered_positions(
+        mut self,
+        number: &dyn Fn(&Object, u32) -> f32,
+    ) -> Result<(Self, Positions), TechniqueError> {
+        let positions = Positions::create(self.size, &mut self.recording)?;
+        let pass = self
+            .draws
+            .ambient_pass_with_numbers(&self.targets, &positions, number);
+        self.passes.push(Pass::new(PassRole::Ambient, pass));
+        Ok((self, positions))
     }
 
     fn with_ambient_and(mut self, positions: Positions) -> (Self, Positions) {

@@ -22,6 +22,7 @@ mod heat;
 mod horizon;
 mod light_colors;
 mod light_images;
+mod line_samples;
 mod lit_tiles;
 mod map_support;
 mod moment_bounds;

@@ -137,6 +137,9 @@ impl FragmentShader for LeaningAmbient {
             },
         );
         f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+    }
+}
+
 /// The facet's normal, and where the pixel's ray meets it.
 #[inline(always)]
 fn seen_position<L: Lanes>(rays: &PixelRays, f: &Fragment<'_, L>) -> ([F32<L>; 3], [F32<L>; 3]) {

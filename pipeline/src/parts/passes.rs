@@ -196,7 +196,7 @@ impl<'a> SceneDraws<'a> {
     ) -> RenderPass {
         let rays = self.view.pixel_rays();
         let draw = |s: &SurfaceDraw<'_>| {
-            let ambient = s.ambient(self.scene.ambient);
+            let ambient = s.ambient(self.even_ambient());
             let pipeline = RenderPipeline {
                 label: "ambient".into(),
                 vertex: NumberedFacets(self.view.clip_from_world).stage(),

@@ -188,7 +188,7 @@ impl<'a> ShadowedFrame<'a> {
         let pass = self
             .draws
             .ambient_pass_with_numbers(&self.targets, &positions, number);
-        self.passes.push(Pass::new(PassRole::Ambient, pass));
+        self.push_ambient(pass);
         Ok((self, positions))
     }
 

@@ -130,6 +130,11 @@ fn end(end: &End) -> Value {
         End::Worse { at, rmse, warnings } => {
             json!({ "worse_at": at, "rmse": rmse, "warnings": warnings })
         }
+        End::Apart {
+            at,
+            compared,
+            warnings,
+        } => json!({ "apart_at": at, "compared": compared, "warnings": warnings }),
         End::Refused { at, reason } => json!({ "refused_at": at, "reason": reason }),
     }
 }

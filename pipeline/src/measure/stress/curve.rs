@@ -192,9 +192,6 @@ fn compare(done: &Rendered, truth: &Reference) -> Result<Outcome, String> {
         .collect();
     let error = VisibilityError::measure(&under.truth, done.size, &seen);
     let error = error.map_err(|e| e.to_string())?;
-    let all = error
-        .all
-        .ok_or("picture and truth show no surface in common")?;
     let surfaces = done.depth.iter().filter(|d| **d < 1.0).count();
     let insane = done.depth.iter().zip(&done.visibility);
     let insane = insane.filter(|(d, v)| **d < 1.0 && !(0.0..=1.0).contains(*v));

@@ -30,6 +30,7 @@ mod overlaps;
 mod paper1;
 mod paper1_sizes;
 mod paper2;
+mod paper2_ending;
 mod paper2_range;
 mod paper2_recorded;
 mod paper2_rest;

@@ -79,7 +79,7 @@ fn recorded_sums_are_what_the_buffers_hold_and_count_what_saturates() {
     assert_is_what_buffers_hold("columns", three, &["buffer=rgba8"], 2);
     assert_is_what_buffers_hold("columns", three, &["buffer=rgba8x2"], 3);
     // Six bits leave room for four, and more lie over one another there.
-    let saturated = assert_is_what_buffers_hold("creature", three, &["buffer=rgba8"], 2);
+    let saturated = assert_is_what_buffers_hold("peer-c", three, &["buffer=rgba8"], 2);
     assert!(saturated > 0);
 }
 

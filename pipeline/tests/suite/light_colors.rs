@@ -75,6 +75,24 @@ fn each_color_is_seen_of_its_own_half() {
     }
 }
 
+/// Colors in bytes are those in half floats, to two steps: the share itself is stored, and
+/// not twice the share.
+#[test]
+fn eight_bits_of_a_color_are_near_to_sixteen() {
+    let scene = builtin::build("parallel-plates").unwrap();
+    let of = |bits: &str| {
+        let set = ["light-image=halves", bits];
+        channels(&scene, "soft-shadow-volumes", &set)
+    };
+    let (eight, sixteen) = (of("texture-bits=8"), of("texture-bits=16"));
+    for (channel, (a, b)) in eight.iter().zip(&sixteen).enumerate() {
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        let worst = off.filter(|d| !d.is_nan()).fold(0.0, f32::max);
+        assert!(worst < 0.01, "{channel}: {worst}");
+        assert!(a.iter().any(|v| *v < 0.1), "{channel}");
+    }
+}
+
 /// Paper III's texture for a light of one colour, split over bytes: as exact as it is in a
 /// float, with the same errors of its own.
 #[test]

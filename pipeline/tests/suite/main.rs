@@ -17,6 +17,7 @@ mod deferred_shadowing;
 mod drawing;
 mod environment;
 mod eye_in_shadow;
+mod front_tests;
 mod hard_truth_speed;
 mod heat;
 mod horizon;

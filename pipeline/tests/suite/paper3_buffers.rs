@@ -294,3 +294,34 @@ fn what_takes_no_shadow_is_lit_whatever_was_counted() {
     assert_eq!(resolved(1, [0.0, 0.0], 0.0), 1.0);
     assert_eq!(resolved(7, [0.0, 63.0], 0.0), 1.0);
 }
+
+/// The eye is in a plate, and the near plane cuts away the lit face above it, by which all
+/// rays leave: what is beyond is lit, whatever counts.
+#[test]
+fn lit_faces_that_the_near_plane_cuts_away_are_left_in_the_stencil_too() {
+    let solid = |name: &str, shape: shape::Shape| {
+        let mesh = shape.into_mesh(Shading::Flat).unwrap();
+        Object::new(name, mesh, Material::matt([0.7; 3]))
+    };
+    let plate = shape::cuboid(DVec3::new(0.0, 0.6, 0.0), DVec3::new(3.0, 0.1, 3.0));
+    let wall = shape::cuboid(DVec3::new(0.0, 2.0, -4.0), DVec3::new(8.0, 6.0, 0.2));
+    let light = Light {
+        shape: LightShape::Sphere {
+            centre: DVec3::new(0.5, 6.0, 1.0),
+            radius: 0.4,
+        },
+        colour: [1.0; 3],
+    };
+    let mut camera = Camera::look_at([0.0, 0.6, 0.0], [0.0, 2.2, -4.0]);
+    camera.near = 0.5;
+    let objects = vec![solid("plate", plate), solid("wall", wall).receiver_only()];
+    let scene = Scene::new(camera, vec![light], objects);
+    for buffer in ["buffer=r32f", "buffer=rgba8x2", "buffer=rgba8"] {
+        let done = draw(&scene, &[buffer]);
+        let lit = done.visibility.iter().filter(|v| **v > 0.9).count();
+        assert!(2 * lit > done.visibility.len(), "{buffer}: {lit}");
+        let caps = done.report.passes.iter().flat_map(|p| &p.draws);
+        let caps = caps.filter(|d| d.label.starts_with("near caps"));
+        assert!(caps.count() > 0, "{buffer}");
+    }
+}

@@ -21,9 +21,9 @@ const SIZE: [u32; 2] = [48, 32];
 
 /// The most of what costs time or memory without bound; the ignored test goes farther.
 const SHORT: [(&str, u64); 12] = [
-    ("map-size", 128),
+    ("map-size", 64),
     ("texture-size", 5),
-    ("samples", 16),
+    ("samples", 9),
     ("search-samples", 16),
     ("pcf-samples", 16),
     ("maps", 9),

@@ -39,6 +39,7 @@ mod settings;
 mod shadows;
 mod sheets;
 mod sources;
+mod transported;
 
 use std::cell::RefCell;
 

@@ -343,7 +343,12 @@ pub(super) fn parsed(
 /// Settings that take back what defaults are better than the papers by: claims are of what
 /// was published.
 fn as_published(technique: &dyn Technique) -> &'static [&'static str] {
-    const CONVOLUTION: &[&str] = &["horizon=off", "plane-offset=0", "map-size=512", "a=30"];
+    const CONVOLUTION: &[&str] = &[
+        "horizon=off",
+        "plane-offset=0",
+        "map-size=512",
+        "mip-sharper=0.8",
+    ];
     let has = |name: &str| technique.params().iter().any(|p| p.name == name);
     match (has("plane-offset"), has("horizon")) {
         (true, _) => CONVOLUTION,

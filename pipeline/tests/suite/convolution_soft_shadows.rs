@@ -389,20 +389,26 @@ fn sharpening_is_the_power_that_is_asked_for() {
     let behind = (PLATES.floor_distance - PLATES.plate_distance) / (range[1] - range[0]);
     let pixels = floor_pixels(&scene, &without);
     for (strength, falloff) in [(30.0, 2.0), (3.0, 2.0), (3.0, 0.5)] {
-        let [a, b] = [format!("a={strength}"), format!("b={falloff}")];
-        let with = soft(&scene, &[&plain[..], &[&a, &b]].concat());
         let power = 1.0 + strength * libm::exp(-falloff * behind);
-        let (mut worst, mut judged) = (0.0f64, 0);
-        for &(i, _) in &pixels {
-            let [v, sharp] = [&without, &with].map(|p| f64::from(p.visibility[i]));
-            // Where little is hidden the mean depth of blockers is less than exact.
-            if (0.05..0.9).contains(&v) {
-                worst = worst.max((sharp - libm::pow(v, power)).abs());
-                judged += 1;
+        let off = |strength: f64| {
+            let [a, b] = [format!("a={strength}"), format!("b={falloff}")];
+            let with = soft(&scene, &[&plain[..], &[&a, &b]].concat());
+            let (mut worst, mut judged) = (0.0f64, 0);
+            for &(i, _) in &pixels {
+                let [v, sharp] = [&without, &with].map(|p| f64::from(p.visibility[i]));
+                // Where little is hidden the mean depth of blockers is less than exact.
+                if (0.05..0.9).contains(&v) {
+                    worst = worst.max((sharp - libm::pow(v, power)).abs());
+                    judged += 1;
+                }
             }
-        }
-        println!("{a} {b}: power {power:.2}, off by {worst:.4} of {judged}");
-        assert!(judged > 100 && worst < 0.02, "{a} {b}: {worst} of {judged}");
+            println!("{a} {b}: power {power:.2}, off by {worst:.4} of {judged}");
+            assert!(judged > 100, "{a} {b}: {judged}");
+            worst
+        };
+        assert!(off(strength) < 0.02);
+        // Half of it is seen.
+        assert!(off(0.5 * strength) > 0.04);
     }
 }
 
@@ -429,21 +435,22 @@ fn sheared_lights_are_told() {
     assert!(told(&scene), "sheared");
 }
 
-/// Steep lit faces shadow themselves less where their planes lessen depths, on every
-/// scene, and a level floor stays as it is.
+/// Steep lit faces shadow themselves less where their planes lessen depths, and a level
+/// floor stays as it is.
 #[test]
 fn planes_of_receivers_bring_steep_faces_nearer_to_the_truth() {
     let error = |scene: &Scene, set: &[&str]| {
         let truth = VisibilityImage::of_scene(scene, 0, SIZE, &|| ()).unwrap();
-        let picture = soft(scene, &[set, &["a=0", "m=8"]].concat());
+        let more = ["horizon=on", "a=0", "m=16", "map-size=256"];
+        let picture = soft(scene, &[set, &more].concat());
         let error = VisibilityError::measure(&truth, SIZE, &picture.visibility);
         error.unwrap().all.unwrap().rmse
     };
-    for name in ["peer-a", "demo", "spheres"] {
+    for name in ["peer-a", "demo"] {
         let scene = builtin::build(name).unwrap();
         let [off, on] = ["plane-offset=0", "plane-offset=0.5"].map(|s| error(&scene, &[s]));
         println!("{name}: {off:.4} {on:.4}");
-        assert!(on < 0.95 * off, "{name}: {on} of {off}");
+        assert!(on < 0.85 * off, "{name}: {on} of {off}");
     }
     let set = ["plane-offset=0.5", "a=0"];
     assert!(floor_error(&plates(), &set)[0] < 0.004);

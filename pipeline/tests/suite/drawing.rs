@@ -33,6 +33,7 @@ pub(crate) fn as_published(technique: &dyn Technique) -> Vec<&'static str> {
     let added = [
         ("horizon", "horizon=off"),
         ("plane-offset", "plane-offset=0"),
+        ("mip-sharper", "mip-sharper=0.8"),
     ];
     let has = |name: &str| technique.params().iter().any(|p| p.name == name);
     let mut set: Vec<_> = added

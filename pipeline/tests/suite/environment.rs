@@ -146,7 +146,7 @@ fn fitted_lights_come_near_the_reference() {
     let of = |scene: &Scene| scored(scene, technique, &[], &truth);
     let [few, many] = [of(&scene), of(&under_sky("creature", lights(60)))];
     assert!(
-        few.relative_rmse < 0.06 && many.relative_rmse < 0.06,
+        few.relative_rmse < 0.035 && many.relative_rmse < 0.035,
         "{few:?}\n{many:?}"
     );
     assert!(many.psnr > 30.0 && many.flip < 0.08, "{many:?}");
@@ -160,7 +160,8 @@ fn fitted_lights_come_near_the_reference() {
         ..lights(30)
     };
     let mean = of(&under_sky("creature", mean));
-    assert!(mean.rmse > 2.0 * few.rmse, "{mean:?}");
+    // More of the light is ambient, of which order 1 has the direction.
+    assert!(mean.rmse > 1.3 * few.rmse, "{mean:?}");
     let one = of(&under_sky("creature", lights(1)));
     assert!(one.rmse > 2.0 * few.rmse, "{one:?}");
 }
@@ -189,12 +190,15 @@ fn the_reference_is_of_the_map_and_not_of_the_cube() {
     let behind = (0..64 * 48).filter(|i| done.depth[*i] == 1.0);
     let mut colours = Vec::new();
     for i in behind {
-        assert_eq!(done.srgb[i], fine.srgb[i], "{i}");
+        // The picture is in halves, the reference is not.
+        let [seen, truth] = [done.srgb[i], fine.srgb[i]];
+        let off = (0..4).map(|c| seen[c].abs_diff(truth[c])).max();
+        assert!(off <= Some(1), "{i}: {seen:?} {truth:?}");
         colours.push(done.srgb[i]);
     }
     colours.sort_unstable();
     colours.dedup();
-    assert!(colours.len() > 50, "{} colours", colours.len());
+    assert!(colours.len() > 20, "{} colours", colours.len());
 }
 
 /// Two sets of directions agree far better than lights with either.

@@ -138,7 +138,7 @@ fn every_technique_knows_the_horizon() {
         }
         let few = technique.params().iter().any(|p| p.name == "map-size");
         let few: &[&str] = if few { &["map-size=256"] } else { &[] };
-        let default = Params::defaults(technique);
+        let default = Params::defaults(*technique);
         assert_eq!(default.text("horizon"), Some("on"), "{name}");
         let [off, on] =
             ["horizon=off", "horizon=on"].map(|h| rmse(&scene, name, &[few, &[h]].concat()));

@@ -17,10 +17,8 @@ const SIZE: [u32; 2] = [240, 160];
 
 fn work(name: &str, scene: &Scene, set: &[&str]) -> WedgeWork {
     let technique = find(name).unwrap();
-    let set = as_published(technique)
-        .into_iter()
-        .chain(set.iter().copied());
-    let params = Params::parse(technique, set).unwrap();
+    let published = as_published(technique).into_iter();
+    let params = Params::parse(technique, published.chain(set.iter().copied())).unwrap();
     let settings = RenderSettings {
         size: SIZE,
         ..RenderSettings::default()

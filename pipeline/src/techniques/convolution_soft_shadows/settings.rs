@@ -111,7 +111,7 @@ const FALLOFF: Param<f64> = Param::decimal(
 
 const PLANE_OFFSET: Param<f64> = Param::decimal(
     "plane-offset",
-    0.5,
+    0.3,
     0.0,
     "share of what a receiver's plane gains over half a kernel that its depth is lessened by, half of it where blockers are looked for; 0: as in the paper",
 );
@@ -132,7 +132,7 @@ const THRESHOLD: Param<f64> = Param::decimal_above(
 
 const MIP_SHARPER: Param<f64> = Param::decimal(
     "mip-sharper",
-    0.8,
+    1.2,
     0.0,
     "mip levels finer than the one whose texels are as wide as the kernel",
 )

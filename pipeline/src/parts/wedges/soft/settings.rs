@@ -45,9 +45,6 @@ pub(crate) const SPHERE: Param<SphereDisc> = Param::choice(
 )
 .when(Condition::Lights(LightFact::Sphere));
 
-/// Colours of an image do not lie alike before a facet's plane.
-const WITHOUT_IMAGE: Param<bool> = HORIZON.when(Condition::Is("light-image", &["white"]));
-
 /// Lights of both techniques on soft shadow volumes.
 pub(crate) const SOFT_LIGHTS: LightKinds = LightKinds {
     directions: false,
@@ -67,12 +64,8 @@ pub(crate) struct SoftSettings {
 
 impl SoftSettings {
     /// The parameters besides [`WEDGE`], whose default is the technique's.
-    pub(crate) const PARAMS: &'static [ParamInfo] = &[
-        SPHERE.info,
-        WITHOUT_IMAGE.info,
-        OPEN_CASTERS.info,
-        SKIP.info,
-    ];
+    pub(crate) const PARAMS: &'static [ParamInfo] =
+        &[SPHERE.info, HORIZON.info, OPEN_CASTERS.info, SKIP.info];
 
     pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
         Ok(Self {

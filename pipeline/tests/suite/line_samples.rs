@@ -98,7 +98,7 @@ fn shapes(centre: DVec3, size: f64) -> [LightShape; 4] {
     ];
     let pentagon = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k: f64| {
         let angle = k * std::f64::consts::TAU / 5.0;
-        corner(0.7 * angle.cos(), 0.0, 0.7 * angle.sin())
+        corner(0.7 * libm::cos(angle), 0.0, 0.7 * libm::sin(angle))
     });
     [
         LightShape::Disc {

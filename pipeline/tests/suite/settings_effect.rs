@@ -395,6 +395,7 @@ fn check(names: &[&str]) {
 pub(crate) const VOLUMES: [&str; 3] = ["unshadowed", "shadow-volumes", "sampled-shadow-volumes"];
 pub(crate) const WEDGES: [&str; 2] = ["penumbra-wedges", "penumbra-wedges-restructured"];
 pub(crate) const SOFT: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
+pub(crate) const LINES: [&str; 1] = ["line-sampled-shadow-volumes"];
 pub(crate) const MAPS: [&str; 4] = ["shadow-map", "pcf", "pcss", "shadow-maps-n"];
 pub(crate) const MOMENTS: [&str; 4] = ["vsm", "evsm", "msm", "vssm"];
 pub(crate) const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
@@ -405,10 +406,11 @@ pub(crate) const CONES: [&str; 2] = ["cone-culling", "smoothies"];
 pub(crate) const OTHERS: [&str; 2] = ["convolution-soft-shadows", "mixed-lights"];
 
 /// All of them.
-pub(crate) const ALL: [&[&str]; 11] = [
+pub(crate) const ALL: [&[&str]; 12] = [
     &VOLUMES,
     &WEDGES,
     &SOFT,
+    &LINES,
     &MAPS,
     &MOMENTS,
     &BACKPROJECTED,
@@ -440,6 +442,11 @@ fn settings_of_linked_wedges_act_or_are_warned_of() {
 #[test]
 fn settings_of_soft_volumes_act_or_are_warned_of() {
     check(&SOFT);
+}
+
+#[test]
+fn settings_of_lines_act_or_are_warned_of() {
+    check(&LINES);
 }
 
 #[test]

@@ -5,9 +5,9 @@ use gnomon_raster::shader::Fragment;
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, I32, Lanes, Mask};
 
-use super::events::Events;
+use super::events::Gap;
 use super::receiver::{Receiver, cross};
-use super::{ANCHOR_RAYS, FACETS, LINES, LineSamples, NODES};
+use super::{ANCHOR_RAYS, FACETS, LineSamples, NODES};
 
 /// Most boxes: uniforms of a file may ask for any number.
 const MOST_NODES: u32 = 1 << 26;
@@ -30,21 +30,14 @@ impl LineSamples {
         l: L,
         f: &mut Fragment<'_, L>,
         r: &mut Receiver<L>,
-        events: &Events<L>,
+        gap: &Gap<L>,
         wanted: Mask<L>,
     ) {
         let asked = r.uncounted & wanted;
         if !asked.any() {
             return;
         }
-        let gap = events.widest(l);
-        let mut y = F32::splat(l, 0.0);
-        for k in 0..events.lines {
-            let [at, ..] = self.one(f, LINES, events.first + k as u32);
-            let here = gap.line.eq(F32::splat(l, k as f32));
-            y = here.select_f32(r.scale * at, y);
-        }
-        let to = self.point(l, r, gap.middle, y);
+        let to = self.point(l, r, gap.middle[0], gap.middle[1]);
         f.count(ANCHOR_RAYS, asked);
         let ray = Ray::new(l, r, to);
         let counted = self.crossed(l, f, &ray, asked);

@@ -4,7 +4,8 @@ use gnomon_raster::shader::Fragment;
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, I32, Lanes, Mask};
 
-use super::{LINES, LineSamples, MOST_LINES};
+use super::receiver::Receiver;
+use super::{LINES, LineSamples, MOST_CORNERS, MOST_LINES};
 use crate::soft_volumes::texel_of;
 
 /// Lines at hand at a time.
@@ -49,8 +50,9 @@ pub(super) struct Events<L: Lanes> {
 /// The widest part of a line without event.
 pub(super) struct Gap<L: Lanes> {
     pub(super) width: F32<L>,
-    pub(super) middle: F32<L>,
-    pub(super) line: F32<L>,
+    /// A point in it.
+    pub(super) middle: [F32<L>; 2],
+    /// D there less that at the anchor.
     pub(super) depth: F32<L>,
 }
 
@@ -121,26 +123,72 @@ impl<L: Lanes> Events<L> {
         line.overflown = line.overflown | x.lt(end);
         self.overflown = self.overflown | line.overflown;
     }
+}
 
-    /// The widest gap between events.
+impl<L: Lanes> Gap<L> {
     #[inline(always)]
-    pub(super) fn widest(&self, l: L) -> Gap<L> {
+    pub(super) fn new(l: L) -> Self {
         let zero = F32::splat(l, 0.0);
-        let mut gap = Gap {
+        Self {
             width: -F32::splat(l, 1.0),
-            middle: zero,
-            line: zero,
+            middle: [zero; 2],
             depth: zero,
-        };
-        for k in 0..self.lines {
-            let line = &self.line[k];
+        }
+    }
+}
+
+impl LineSamples {
+    /// Lines number `first` and on, as receivers have them.
+    #[inline(always)]
+    pub(super) fn place_lines<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        r: &Receiver<L>,
+        events: &mut Events<L>,
+        [first, count]: [u32; 2],
+    ) {
+        let zero = F32::splat(l, 0.0);
+        events.first = first;
+        events.lines = count as usize;
+        for k in 0..events.lines {
+            let [y, left, right, slope] = self.one(f, LINES, first + k as u32);
+            let y = r.scale * y;
+            let [low, high] = self.before(l, r, y, [r.scale * left, r.scale * right]);
+            let rise = y - r.anchor[1];
+            let level = rise.eq(zero);
+            let spoke =
+                (((low + high) * 0.5) - r.anchor[0]) / level.select_f32(F32::splat(l, 1.0), rise);
+            let spoke = level.select_f32(zero, spoke);
+            let line = &mut events.line[k];
+            line.level = (r.y - y) * r.inverse;
+            line.left = low;
+            line.right = high;
+            line.slope = r.cut.select_f32(spoke, F32::splat(l, slope));
+            line.at = low;
+        }
+    }
+
+    /// Takes the widest gap of lines at hand, if it is wider than that known.
+    #[inline(always)]
+    pub(super) fn widen<L: Lanes>(
+        &self,
+        f: &mut Fragment<'_, L>,
+        r: &Receiver<L>,
+        events: &Events<L>,
+        gap: &mut Gap<L>,
+    ) {
+        for k in 0..events.lines {
+            let [y, ..] = self.one(f, LINES, events.first + k as u32);
+            let y = r.scale * y;
+            let line = &events.line[k];
             let (mut at, mut depth) = (line.left, line.depth);
             for slot in 0..=line.used {
                 let last = slot == line.used;
                 let next = if last {
                     line.right
                 } else {
-                    self.x[k][slot].min(line.right)
+                    events.x[k][slot].min(line.right)
                 };
                 let mut wider = (next - at).gt(gap.width);
                 if last {
@@ -148,20 +196,20 @@ impl<L: Lanes> Events<L> {
                 }
                 gap.width = wider.select_f32(next - at, gap.width);
                 // Not the very middle: symmetric scenes have edges there.
-                gap.middle = wider.select_f32(at + (next - at) * 0.437_5, gap.middle);
-                gap.line = wider.select_f32(F32::splat(l, k as f32), gap.line);
+                let x = at + (next - at) * 0.437_5;
+                gap.middle = [
+                    wider.select_f32(x, gap.middle[0]),
+                    wider.select_f32(y, gap.middle[1]),
+                ];
                 gap.depth = wider.select_f32(depth, gap.depth);
                 if !last {
                     at = next;
-                    depth = depth + self.change[k][slot];
+                    depth = depth + events.change[k][slot];
                 }
             }
         }
-        gap
     }
-}
 
-impl LineSamples {
     /// Goes through the events that there are.
     #[inline(always)]
     pub(super) fn sweep<L: Lanes>(
@@ -263,7 +311,8 @@ impl LineSamples {
         let place = ((x - left) * (steps / (right - left))).clamp(0.0, steps);
         let whole = place.floor().min(F32::splat(l, steps - 1.0));
         let part = place - whole;
-        let row = self.lines.min(MOST_LINES) + number * (self.sums.steps + 1);
+        let before = self.lines.min(MOST_LINES) + self.corners.min(MOST_CORNERS);
+        let row = before + number * (self.sums.steps + 1);
         let at = whole.to_i32() + I32::splat(l, row as i32);
         let table = self.table(LINES);
         let [low, high] = [table.place(l, at), table.place(l, at + I32::splat(l, 1))];

@@ -15,7 +15,8 @@
 //! 0. positions; w is 0 where no shadow falls, 1 on what casts none, else 2 and the number of
 //!    the facet's plane
 //! 1. depth and stencil
-//! 2. lines: y, least and greatest x, slope of the foot; then of lights with an image sums
+//! 2. lines: y, least and greatest x, slope of the foot; then the corners of a polygon, each
+//!    with the next; then of lights with an image sums
 //!    of its colours from the left, [`LightSums::steps`] and one for each line
 //! 3. for each block of 8×8 pixels the first texel of its list and the number of edges
 //! 4. lists, four numbers of edges a texel, counted from 1
@@ -33,7 +34,7 @@ use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, I32, Lanes, Mask, uniforms};
 
-use self::events::{AT_ONCE, Events};
+use self::events::{AT_ONCE, Events, Gap};
 use self::receiver::Receiver;
 use crate::coverage::outlined;
 use crate::shadow_rays::Table;
@@ -62,8 +63,9 @@ const NEGATIVE: usize = 3;
 
 /// Kinds of edges are in numbers of planes, in steps of this.
 pub const KIND_STEP: f32 = 4_194_304.0;
-/// Most lines, and most edges of a list.
+/// Most lines, most corners, and most edges of a list.
 const MOST_LINES: u32 = 256;
+const MOST_CORNERS: u32 = 4096;
 const MOST_EDGES: u32 = 1 << 24;
 
 /// The light as receivers need it.
@@ -110,6 +112,11 @@ pub struct LineSamples {
     pub spacing: [f32; 2],
     /// Sum of the lengths of all lines in the light.
     pub whole: f32,
+    /// Corners of a polygon, in the light's coordinates, behind the lines; none of a round
+    /// light.
+    pub corners: u32,
+    /// Twice the area that they enclose.
+    pub double_area: f32,
     /// Whether all feet lie on one straight spine.
     pub straight: bool,
     /// The image on it.
@@ -133,6 +140,8 @@ uniforms!(LineSamples {
     lines,
     spacing,
     whole,
+    corners,
+    double_area,
     straight,
     sums,
     tables,
@@ -192,9 +201,12 @@ impl LineSamples {
         let zero = F32::splat(l, 0.0);
         let mut visible = [zero; 3];
         let mut negative = Mask::splat(l, false);
+        let mut gap = Gap::new(l);
+        // Receivers that do not know D at the anchor look at all lines before any is swept.
+        let mut searching = true;
         let count = self.lines.min(MOST_LINES);
         let mut first = 0;
-        while first < count {
+        'groups: while first < count {
             let some = (count - first).min(AT_ONCE as u32);
             let mut events = Events::new(l);
             outlined(
@@ -209,13 +221,28 @@ impl LineSamples {
                     #[inline(always)]
                     || self.collect(l, f, receiver, &mut events, list, look, wanted),
                 );
-                if first == 0 && look == 0 {
+                if searching && (receiver.uncounted & wanted).any() {
                     outlined(
                         l,
                         #[inline(always)]
-                        || self.count_at_anchor(l, f, receiver, &events, wanted),
+                        || self.widen(f, receiver, &events, &mut gap),
                     );
+                    if first + some < count {
+                        first += some;
+                        continue 'groups;
+                    }
+                    outlined(
+                        l,
+                        #[inline(always)]
+                        || self.count_at_anchor(l, f, receiver, &gap, wanted),
+                    );
+                    searching = false;
+                    if first > 0 {
+                        first = 0;
+                        continue 'groups;
+                    }
                 }
+                searching = false;
                 outlined(
                     l,
                     #[inline(always)]
@@ -254,10 +281,9 @@ impl LineSamples {
             first += some;
         }
         f.count(NEGATIVE, negative & wanted);
-        let whole = receiver.scale * self.whole;
         each3(
             #[inline(always)]
-            |c| (visible[c] / whole).clamp(0.0, 1.0),
+            |c| (visible[c] / receiver.whole).clamp(0.0, 1.0),
         )
     }
 }

@@ -5,8 +5,7 @@ use gnomon_raster::shader::Fragment;
 use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, I32, Lanes, Mask};
 
-use super::events::Events;
-use super::{EDGES, LINES, LineSamples, MOST_LINES};
+use super::{EDGES, LINES, LineSamples, MOST_CORNERS, MOST_LINES};
 
 /// Sixteen receivers.
 pub(super) struct Receiver<L: Lanes> {
@@ -38,6 +37,8 @@ pub(super) struct Receiver<L: Lanes> {
     /// Receivers whose own plane cuts the light, and where D is counted for them.
     pub(super) cut: Mask<L>,
     pub(super) anchor: [F32<L>; 2],
+    /// Sum of the lengths of lines of which all is seen.
+    pub(super) whole: F32<L>,
     /// D at the anchor.
     pub(super) base: F32<L>,
     /// Receivers that do not know it.
@@ -89,6 +90,7 @@ impl LineSamples {
             has_own: own.ge(zero),
             cut: Mask::splat(l, false),
             anchor: [zero; 2],
+            whole: one,
             base: count,
             uncounted: Mask::splat(l, false),
             slack: zero,
@@ -104,6 +106,7 @@ impl LineSamples {
         if !self.counted {
             receiver.uncounted = count.ne(zero);
         }
+        receiver.whole = receiver.scale * self.whole;
         self.look_before_own_plane(l, f, &mut receiver);
         receiver
     }
@@ -188,7 +191,7 @@ impl LineSamples {
             #[inline(always)]
             |k| averted.select_f32(-normal[k], normal[k]),
         );
-        let mut longest = zero;
+        let (mut longest, mut sum) = (zero, zero);
         for k in 0..self.lines.min(MOST_LINES) {
             let [y, left, right, _] = self.one(f, LINES, k);
             let y = r.scale * y;
@@ -196,6 +199,7 @@ impl LineSamples {
             let [low, high] = self.before(l, r, y, whole);
             r.cut = r.cut | (r.has_own & (low.ne(whole[0]) | high.ne(whole[1])));
             let long = high - low;
+            sum = sum + long;
             let longer = r.has_own & long.gt(longest);
             longest = longer.select_f32(long, longest);
             let middle = (low + high) * 0.5;
@@ -209,11 +213,64 @@ impl LineSamples {
             r.cut.select_f32(r.anchor[1], zero),
         ];
         r.uncounted = r.uncounted | (r.cut & longest.gt(zero));
+        self.take_share_before_own_plane(l, f, r, sum);
+    }
+
+    /// Of a polygon that the own plane cuts, the area before it is known: lines that are
+    /// seen up to there, whose lengths give `sum`, are worth that.
+    #[inline(always)]
+    fn take_share_before_own_plane<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        r: &mut Receiver<L>,
+        sum: F32<L>,
+    ) {
+        if !r.cut.any() || self.corners == 0 || self.sums.steps > 0 {
+            return;
+        }
+        let zero = F32::splat(l, 0.0);
+        let (mut twice, mut left, mut entered) = (zero, [zero; 2], [zero; 2]);
+        for k in 0..self.corners.min(MOST_CORNERS) {
+            let [ax, ay, bx, by] = self.one(f, LINES, self.lines.min(MOST_LINES) + k);
+            let (a, b) = (self.height(r, [ax, ay]), self.height(r, [bx, by]));
+            let (first, second) = (a.ge(zero), b.ge(zero));
+            let along = a / (a - b);
+            let x = along * (bx - ax) + ax;
+            let y = along * (by - ay) + ay;
+            let from = [
+                first.select_f32(F32::splat(l, ax), x),
+                first.select_f32(F32::splat(l, ay), y),
+            ];
+            let to = [
+                second.select_f32(F32::splat(l, bx), x),
+                second.select_f32(F32::splat(l, by), y),
+            ];
+            let part = from[0] * to[1] - from[1] * to[0];
+            twice = twice + (first | second).select_f32(part, zero);
+            let (leaves, enters) = (first & !second, second & !first);
+            left = [leaves.select_f32(x, left[0]), leaves.select_f32(y, left[1])];
+            entered = [
+                enters.select_f32(x, entered[0]),
+                enters.select_f32(y, entered[1]),
+            ];
+        }
+        twice = twice + (left[0] * entered[1] - left[1] * entered[0]);
+        let some = r.cut & twice.gt(zero) & sum.gt(zero);
+        let whole = sum * (F32::splat(l, self.double_area) / twice);
+        r.whole = some.select_f32(whole, r.whole);
+    }
+
+    /// How far a point of the light is before the own plane.
+    #[inline(always)]
+    fn height<L: Lanes>(&self, r: &Receiver<L>, [x, y]: [f32; 2]) -> F32<L> {
+        let n = r.normal;
+        (n[0] * (-r.x + x) + n[1] * (-r.y + y)) - n[2] * r.side
     }
 
     /// The part of a line before the own plane; empty as from its left end to there.
     #[inline(always)]
-    fn before<L: Lanes>(
+    pub(super) fn before<L: Lanes>(
         &self,
         l: L,
         r: &Receiver<L>,
@@ -229,37 +286,6 @@ impl LineSamples {
         let low = rises.select_f32(left.max(end), left);
         let high = falls.select_f32(right.min(end), right);
         [low, level.select_f32(low, high).max(low)]
-    }
-
-    /// Lines number `first` and on, as receivers have them.
-    #[inline(always)]
-    pub(super) fn place_lines<L: Lanes>(
-        &self,
-        l: L,
-        f: &mut Fragment<'_, L>,
-        r: &Receiver<L>,
-        events: &mut Events<L>,
-        [first, count]: [u32; 2],
-    ) {
-        let zero = F32::splat(l, 0.0);
-        events.first = first;
-        events.lines = count as usize;
-        for k in 0..events.lines {
-            let [y, left, right, slope] = self.one(f, LINES, first + k as u32);
-            let y = r.scale * y;
-            let [low, high] = self.before(l, r, y, [r.scale * left, r.scale * right]);
-            let rise = y - r.anchor[1];
-            let level = rise.eq(zero);
-            let spoke =
-                (((low + high) * 0.5) - r.anchor[0]) / level.select_f32(F32::splat(l, 1.0), rise);
-            let spoke = level.select_f32(zero, spoke);
-            let line = &mut events.line[k];
-            line.level = (r.y - y) * r.inverse;
-            line.left = low;
-            line.right = high;
-            line.slope = r.cut.select_f32(spoke, F32::splat(l, slope));
-            line.at = low;
-        }
     }
 }
 

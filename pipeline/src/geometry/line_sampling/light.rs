@@ -158,6 +158,26 @@ impl LineLight {
         }
     }
 
+    /// Area of the part of a polygon whose points have positive height, over that of the
+    /// whole; `None` for round lights.
+    pub fn share_before(&self, height: impl Fn([f64; 2]) -> f64) -> Option<f64> {
+        let Extent::Polygon(outline) = &self.extent else {
+            return None;
+        };
+        let mut part: Vec<[f64; 2]> = Vec::with_capacity(outline.len() + 1);
+        for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+            let (from, to) = (height(*a), height(*b));
+            if from >= 0.0 {
+                part.push(*a);
+            }
+            if (from >= 0.0) != (to >= 0.0) {
+                let t = from / (from - to);
+                part.push([0, 1].map(|k| a[k] + (b[k] - a[k]) * t));
+            }
+        }
+        Some(double_area(&part) / double_area(outline))
+    }
+
     /// How much larger a sphere looks from `distance` to its centre: the disc in its place
     /// has the radius r over the root of 1 - r²/D² (docs/papers.md, paper IV). Infinite from inside; 1
     /// for flat lights.
@@ -211,6 +231,13 @@ fn lines_of_polygon(outline: &[[f64; 2]], n: u32) -> Vec<Line> {
         }
     };
     (0..n).map(line).collect()
+}
+
+/// Twice the area of a counter-clockwise polygon.
+pub fn double_area(outline: &[[f64; 2]]) -> f64 {
+    let next = outline.iter().cycle().skip(1);
+    let cross = |(a, b): (&[f64; 2], &[f64; 2])| a[0] * b[1] - a[1] * b[0];
+    outline.iter().zip(next).map(cross).sum()
 }
 
 /// Where a line enters and leaves a convex polygon.

@@ -50,6 +50,8 @@ struct Walk<'a> {
     /// In the light's coordinates.
     p: DVec3,
     light: SeenLight,
+    /// Whether the share before the own plane is known in closed form.
+    closed: bool,
 }
 
 /// An edge relative to the receiver: x, y, and the distance towards the light.
@@ -79,8 +81,13 @@ pub fn visible(casters: &LineCasters, light: &LineLight, n: u32, receiver: LineR
         receiver,
         p,
         light: seen,
+        closed: matches!(light.extent, Extent::Polygon(_)),
     };
-    walk.sweep()
+    let mut seen = walk.sweep();
+    if let Some(share) = walk.share_before(light) {
+        seen.share = (seen.share * share).clamp(0.0, 1.0);
+    }
+    seen
 }
 
 /// The light with z towards `p`; `None` from inside of a sphere.
@@ -117,7 +124,11 @@ impl Walk<'_> {
         let spans: Vec<[f64; 2]> = self.light.lines.iter().map(|l| self.span(l)).collect();
         let (anchor, feet) = self.feet(&spans);
         let mut seen = Seen::default();
-        let whole: f64 = self.light.lines.iter().map(|l| l.right - l.left).sum();
+        let full: f64 = self.light.lines.iter().map(|l| l.right - l.left).sum();
+        let whole = match self.receiver.own.is_some() && self.closed {
+            true => spans.iter().map(|s| (s[1] - s[0]).max(0.0)).sum(),
+            false => full,
+        };
         let Some(anchor) = anchor else {
             return seen;
         };
@@ -135,8 +146,17 @@ impl Walk<'_> {
                     self.sweep_line(&images, (line.y, *span), (anchor, *foot), base, &mut seen);
             }
         }
-        seen.share = (visible / whole).clamp(0.0, 1.0);
+        if whole > 0.0 {
+            seen.share = visible / whole;
+        }
         seen
+    }
+
+    /// Of a polygon that the own plane cuts, the share before it: lines then only say how
+    /// much of that is seen.
+    fn share_before(&self, light: &LineLight) -> Option<f64> {
+        let (_, normal) = self.receiver.own?;
+        light.share_before(|s| normal.dot(light.frame.at(s) - self.receiver.point))
     }
 
     /// The part of a line before the receiver's horizon.

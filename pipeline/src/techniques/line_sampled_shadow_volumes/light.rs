@@ -10,7 +10,7 @@ use super::settings::LineSettings;
 use super::tables::{self, Kept, SourceFrame};
 use super::{LineFrame, NAME};
 use crate::geometry::line_sampling::edges::{ContourEdge, LineCasters};
-use crate::geometry::line_sampling::light::{Extent, Line, LineLight};
+use crate::geometry::line_sampling::light::{Extent, Line, LineLight, double_area};
 use crate::geometry::line_sampling::lists::{BlockLists, Culling};
 use crate::geometry::line_sampling::shaft::Bounds;
 use crate::parts::shadowed_frame::LightTurn;
@@ -111,6 +111,11 @@ impl LightLines {
             lines: lines.len() as u32,
             spacing: spacing(&lines),
             whole: if coloured { 1.0 } else { whole(&lines) },
+            corners: corners(light.as_ref()).len() as u32,
+            double_area: match light.as_ref().map(|l| &l.extent) {
+                Some(Extent::Polygon(outline)) => double_area(outline) as f32,
+                _ => 0.0,
+            },
             straight: lines
                 .windows(2)
                 .all(|l| l[0].slope as f32 == l[1].slope as f32),
@@ -165,6 +170,7 @@ fn line_table(
 ) -> Result<(Kept, bool), TechniqueError> {
     let texel = |l: &Line| [l.y, l.left, l.right, l.slope].map(|v| v as f32);
     let mut texels: Vec<[f32; 4]> = lines.iter().map(texel).collect();
+    texels.extend(corners(light));
     let coloured = match (&settings.image, light) {
         (Some(image), Some(light)) => {
             let sums = sums(&source.shape, light, lines, image);
@@ -179,6 +185,16 @@ fn line_table(
         _ => false,
     };
     Ok((table("lines", texels, recording)?, coloured))
+}
+
+/// Corners of a polygon, each with the next.
+fn corners(light: Option<&LineLight>) -> Vec<[f32; 4]> {
+    let Some(Extent::Polygon(outline)) = light.map(|l| &l.extent) else {
+        return Vec::new();
+    };
+    let next = outline.iter().cycle().skip(1);
+    let both = |(a, b): (&[f64; 2], &[f64; 2])| [a[0], a[1], b[0], b[1]].map(|v| v as f32);
+    outline.iter().zip(next).map(both).collect()
 }
 
 /// What is found out on the CPU: edges, and which matter where.

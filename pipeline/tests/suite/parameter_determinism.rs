@@ -288,6 +288,7 @@ fn values_of_volumes_and_linked_wedges_give_the_same_bits_everywhere() {
 #[test]
 fn values_of_soft_volumes_give_the_same_bits_everywhere() {
     check(&settings_effect::SOFT, &SHORT);
+    check(&settings_effect::LINES, &SHORT);
 }
 
 #[test]

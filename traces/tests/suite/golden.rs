@@ -42,23 +42,18 @@ fn configs() -> Vec<GpuConfig> {
     all
 }
 
-/// Counts what it hears.
-struct Heard(u64);
-
-impl AccessObserver for Heard {
-    fn batch(&mut self, _: usize, batch: &AccessBatch<'_>) {
-        self.0 += batch.blocks.len() as u64;
-    }
-}
-
 #[test]
 fn events_are_as_many_as_sections_say() {
     for (name, trace) in &goldens() {
         for frame in 0..trace.frames() {
             let said = trace.event_count(frame).unwrap();
-            let mut heard = Heard(0);
+            let mut heard = Heard::default();
             let told = trace.events(frame, &mut heard);
-            assert_eq!(said, told.is_ok().then_some(heard.0), "{name}");
+            assert_eq!(
+                said,
+                told.is_ok().then_some(heard.blocks.len() as u64),
+                "{name}"
+            );
             assert!(said.is_none_or(|n| n > 0), "{name}");
         }
     }

@@ -1,6 +1,6 @@
 //! Scenes after the papers' descriptions that are no built-in ones.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::{Lab, ReproduceError};
 use gnomon_pipeline::world::light::{Light, LightShape};
@@ -28,6 +28,24 @@ fn scene(
     let mut scene = Scene::new(camera, vec![light], objects);
     scene.name = name;
     Ok(scene)
+}
+
+/// How far [`turned_plate`] is turned, in radians.
+pub(super) const TURN: f64 = 0.37;
+/// Where on the floor its shadow's edge lies, from below the light's centre.
+pub(super) const TURNED_EDGE: f64 = 5.0 / 3.0;
+
+/// A plate turned against a light's axes, whose shadow's straight edge is looked at from
+/// below.
+pub(super) fn turned_plate() -> Result<Scene, ReproduceError> {
+    let turn = DMat4::from_rotation_y(TURN);
+    let plate = shape::bevelled_plate(1.0, 2.0, 0.01, 1.6).transformed(turn);
+    let mut plate = solid("plate", plate)?;
+    plate.receives = false;
+    let mut camera = Camera::look_at([1.9, -1.4, 0.01], [1.9, 0.0, 0.0]);
+    camera.up = DVec3::Z;
+    let light = Light::horizontal_square(DVec3::Y * 5.0, 0.3);
+    scene("turned-plate".to_owned(), camera, light, vec![plate])
 }
 
 /// `count` (1 to 16) cylinders of 32 sides that stand apart under one light, seen

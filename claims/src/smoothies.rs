@@ -2,9 +2,12 @@
 //! notes. Its cylinder on a floor is the built-in one; its flamingo and elephant are not to
 //! be had.
 
+use glam::DVec3;
 use gnomon_pipeline::technique::PassRole;
+use gnomon_pipeline::truth::metrics::roughness::roughness;
+use gnomon_pipeline::world::scene::Scene;
 
-use super::scenes::with_lights_scaled;
+use super::scenes::{TURN, TURNED_EDGE, turned_plate, with_lights_scaled};
 use super::tally::counters;
 use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
 
@@ -15,6 +18,14 @@ pub(super) const CLAIMS: &[Claim] = &[
         Verdict::Counters,
         "Umbrae stay as large as lights grow, where those of a ray tracer shrink.",
         umbra,
+    ),
+    Claim::new(
+        "smoothies-aliasing",
+        "Chan and Durand, results at 256x256 and 1024x1024",
+        Verdict::Counters,
+        "Edges of a shadow map are jagged at 256x256 and, still, at 1024x1024, where those of \
+         smoothies are smooth; bicubic filtering is in between.",
+        aliasing,
     ),
     Claim::new(
         "smoothies-cost",
@@ -71,6 +82,68 @@ fn umbra(lab: &mut Lab) -> Result<Finding, ReproduceError> {
             ),
         ],
         reason: "The picture from the light was fitted to smoothies.".to_owned(),
+        charts: Vec::new(),
+    })
+}
+
+/// Width of a strip along an edge, world units.
+const STRIP: f64 = 0.004;
+
+/// Roughness of the edge of [`turned_plate`]'s shadow.
+fn edge_roughness(
+    lab: &Lab,
+    scene: &Scene,
+    technique: &str,
+    set: &[&str],
+) -> Result<f64, ReproduceError> {
+    let done = lab.render(scene, technique, set)?;
+    let [width, height] = done.size;
+    let rays = scene.camera.eye_rays(width, height);
+    let edge = DVec3::new(libm::cos(TURN), 0.0, -libm::sin(TURN));
+    let values = done.visibility.iter().enumerate().filter_map(|(k, seen)| {
+        let pixel = [k as u32 % width, k as u32 / width].map(|c| f64::from(c) + 0.5);
+        let ray = rays.direction(pixel[0], pixel[1]);
+        let at = rays.origin - ray * (rays.origin.y / ray.y);
+        let distance = at.dot(edge) - TURNED_EDGE;
+        let along = at.dot(edge.cross(DVec3::Y));
+        let near = along.abs() < 0.8 && (-0.16..0.48).contains(&distance);
+        near.then_some([distance, f64::from(*seen)])
+    });
+    Ok(roughness(values, STRIP))
+}
+
+fn aliasing(lab: &mut Lab) -> Result<Finding, ReproduceError> {
+    let scene = turned_plate()?;
+    let mut found = [[0.0; 3]; 2];
+    for (k, size) in ["map-size=256", "map-size=1024"].into_iter().enumerate() {
+        let of = |technique: &str, more: &[&str]| {
+            let set = [more, &["fit=receivers", size]].concat();
+            edge_roughness(lab, &scene, technique, &set)
+        };
+        found[k] = [
+            of("shadow-map", &[])?,
+            of("pcf", &["kernel=bicubic"])?,
+            of(TECHNIQUE, &[])?,
+        ];
+    }
+    let [coarse, fine] = found;
+    let smoother = |what: &str, rough: f64, smooth: f64| {
+        Measure::new(what, Theirs::AtLeast(1.0), rough / smooth, Unit::Ratio)
+    };
+    let plain = |what: &str, ours: f64| Measure::new(what, Theirs::Beside("-"), ours, Unit::Number);
+    Ok(Finding {
+        scene: lab.describe("a plate's straight shadow edge, turned against the map"),
+        counted: "roughness: by how much visibility differs along the edge, root mean square"
+            .to_owned(),
+        measures: vec![
+            smoother("256: shadow map over bicubic filter", coarse[0], coarse[1]),
+            smoother("256: shadow map over smoothies", coarse[0], coarse[2]),
+            smoother("1024: shadow map over smoothies", fine[0], fine[2]),
+            smoother("1024: bicubic filter over smoothies", fine[1], fine[2]),
+            plain("256: smoothies", coarse[2]),
+            plain("1024: smoothies", fine[2]),
+        ],
+        reason: "Texels of the map are much smaller than pixels.".to_owned(),
         charts: Vec::new(),
     })
 }

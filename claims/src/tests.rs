@@ -157,6 +157,7 @@ fn claims_of_cones_and_smoothies_hold() {
         "cone-culling-overlap",
         "cone-culling-umbra",
         "smoothies-umbra",
+        "smoothies-aliasing",
     ] {
         let found = find(id).unwrap().measure(&mut lab).unwrap().unwrap();
         println!("{id}: {:?}", found.measures);

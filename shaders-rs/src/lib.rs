@@ -114,6 +114,7 @@ stages! {
         surface::Lambert: "surface.lambert" 1,
         surface::Phong: "surface.phong" 1,
         surface::AmbientWithPosition: "surface.ambient-with-position" 1,
+        surface::LeaningAmbient: "surface.leaning-ambient" 1,
         surface::AmbientWithNumber: "surface.ambient-with-number" 1,
         surface::FacetValue: "surface.facet-value" 1,
         surface::Shadowed<surface::Lambert>: "surface.shadowed-lambert" 1,
@@ -148,11 +149,11 @@ stages! {
         convolution::prefilter::LessMean: "convolution.less-mean" 1,
         convolution::prefilter::SumStep: "convolution.sum-step" 1,
         convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>:
-            "convolution.shadow-mipmaps" 1,
+            "convolution.shadow-mipmaps" 2,
         convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>:
-            "convolution.shadow-float-tables" 1,
+            "convolution.shadow-float-tables" 2,
         convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>:
-            "convolution.shadow-integer-tables" 1,
+            "convolution.shadow-integer-tables" 2,
         cones::patches::PatchPicture: "cones.patch-picture" 1,
         cones::bounds::PatchBounds: "cones.patch-bounds" 1,
         cones::ConeShadow<cones::DiscSamples>: "cones.shadow-disc-samples" 1,
@@ -178,6 +179,8 @@ stages! {
             "backprojection.area-sum" 1,
         shadow_maps::Shadow<backprojection::Backprojection<backprojection::cover::BitField>>:
             "backprojection.bit-field" 1,
+        shadow_maps::Shadow<backprojection::Backprojection<backprojection::turned::TurnedBits>>:
+            "backprojection.turned-bits" 1,
         shadow_rays::ShadowRays: "shadow-rays" 1,
         line_samples::LineSamples: "line-samples" 1,
         planar_shadows::PlanarShadow: "planar-shadows" 1,
@@ -197,6 +200,6 @@ mod tests {
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
         assert_eq!(table.vertex_shaders().count(), 13);
-        assert_eq!(table.fragment_shaders().count(), 69);
+        assert_eq!(table.fragment_shaders().count(), 71);
     }
 }

@@ -99,6 +99,47 @@ impl FragmentShader for AmbientWithPosition {
     }
 }
 
+/// Ambient light that leans to one side: `max(even + slope · n, 0)` for each colour, n
+/// the unit normal towards the eye's side, alpha 0. Varyings are those of
+/// [`crate::transform::Surfaces`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeaningAmbient {
+    /// Light on a surface that faces neither to nor from where it comes.
+    pub even: [f32; 3],
+    /// What is added to red per unit of the normal.
+    pub red: [f32; 3],
+    /// Likewise to green.
+    pub green: [f32; 3],
+    /// Likewise to blue.
+    pub blue: [f32; 3],
+}
+uniforms!(LeaningAmbient {
+    even,
+    red,
+    green,
+    blue
+});
+
+impl FragmentShader for LeaningAmbient {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let (normal, _) = inputs(f);
+        let least = F32::splat(l, f32::MIN_POSITIVE);
+        let scale = F32::splat(l, facing(f)) / normal.dot(normal).max(least).sqrt();
+        let slopes = [self.red, self.green, self.blue];
+        let [r, g, b] = each3(
+            #[inline(always)]
+            |c| {
+                let [x, y, z] = slopes[c];
+                let [nx, ny, nz] = normal.0;
+                let lean = (nx * x + ny * y + nz * z) * scale;
+                (lean + F32::splat(l, self.even[c])).max(F32::splat(l, 0.0))
+            },
+        );
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+    }
+}
+
 /// The facet's normal, and where the pixel's ray meets it.
 #[inline(always)]
 fn seen_position<L: Lanes>(rays: &PixelRays, f: &Fragment<'_, L>) -> ([F32<L>; 3], [F32<L>; 3]) {

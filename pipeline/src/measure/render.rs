@@ -9,7 +9,8 @@ use gnomon_shaders::line_samples::NEGATIVE_DEPTH;
 use thiserror::Error;
 
 use crate::technique::{
-    CasterUse, Figure, Frame, Params, Roles, Technique, TechniqueError, VisibilityOutput, Warning,
+    CasterUse, Figure, Frame, KeptPictures, Params, PictureToKeep, Roles, Technique,
+    TechniqueError, VisibilityOutput, Warning,
 };
 use crate::world::scene::Scene;
 
@@ -128,8 +129,39 @@ pub fn render(
     params: &Params,
     settings: &RenderSettings,
 ) -> Result<Rendered, RenderError> {
+    let build = || technique.frame(scene, settings.size, params);
+    Ok(run(scene, technique, params, settings, build)?.0)
+}
+
+/// Renders the next frame of an animation: what the frame before left in `kept` is not
+/// drawn again, and `kept` is then what this one leaves. The picture is that of
+/// [`render`]; counters are of what was drawn.
+///
+/// # Errors
+/// As [`render`]; `kept` then stays as it was.
+pub fn render_next(
+    scene: &Scene,
+    technique: &dyn Technique,
+    params: &Params,
+    settings: &RenderSettings,
+    kept: &mut KeptPictures,
+) -> Result<Rendered, RenderError> {
+    let build = || technique.frame_after(scene, settings.size, params, kept);
+    let (rendered, left) = run(scene, technique, params, settings, build)?;
+    *kept = left;
+    Ok(rendered)
+}
+
+/// Runs the frame that `build` makes; gives what it leaves for the next one too.
+fn run(
+    scene: &Scene,
+    technique: &dyn Technique,
+    params: &Params,
+    settings: &RenderSettings,
+    build: impl FnOnce() -> Result<Frame, TechniqueError>,
+) -> Result<(Rendered, KeptPictures), RenderError> {
     let start = Instant::now();
-    let mut frame = technique.frame(scene, settings.size, params)?;
+    let mut frame = build()?;
     let build_ms = start.elapsed().as_secs_f64() * 1e3;
     check_roles(technique, &frame)?;
     frame.warnings.extend(params.without_effect(scene));
@@ -137,7 +169,23 @@ pub fn render(
     gpu.load(&frame.recording)?;
     let mut times = Times::measure(&mut gpu, &frame, settings.repeat)?;
     times.build = build_ms;
-    read_back(&gpu, scene, frame, settings.size, times)
+    let left = left_behind(&gpu, &frame.keep)?;
+    Ok((read_back(&gpu, scene, frame, settings.size, times)?, left))
+}
+
+/// The pictures that a frame asks to keep; those of one texture follow one another.
+fn left_behind(gpu: &Gpu, keep: &[PictureToKeep]) -> Result<KeptPictures, RenderError> {
+    let mut left = KeptPictures::default();
+    for pictures in keep.chunk_by(|a, b| a.texture == b.texture) {
+        let texture = gpu.texture(pictures[0].texture)?;
+        let descriptor = texture.descriptor();
+        let (width, texel) = (descriptor.size[0], descriptor.format.bytes() as u32);
+        let image = texture.read_packed(Subresource::default())?;
+        for picture in pictures {
+            left.keep(picture.key, picture.cut(&image, width, texel));
+        }
+    }
+    Ok(left)
 }
 
 /// Roles are beside the passes, and go wrong without being noticed.

@@ -7,6 +7,7 @@
 //! over the scene ([`passes`]), and textures of positions and visibility with draws
 //! over the whole screen ([`visibility`]).
 
+pub(crate) mod backdrop;
 pub(crate) mod casters;
 pub(crate) mod far_surface;
 pub mod frame_settings;

@@ -2,6 +2,7 @@
 
 use gnomon_raster::{Recording, TextureId};
 
+use super::kept::PictureToKeep;
 use super::pass::Roles;
 use crate::world::scene::SceneWarning;
 
@@ -26,6 +27,8 @@ pub struct Frame {
     pub casters: Vec<CasterUse>,
     /// Numbers that the technique chose for this scene, such as a bias.
     pub figures: Vec<Figure>,
+    /// What the next frame of an animation may need of this one.
+    pub keep: Vec<PictureToKeep>,
 }
 
 /// A number that a technique chose, to be reported with its results.

@@ -8,6 +8,8 @@ mod capabilities;
 mod condition;
 mod domain;
 mod frame;
+mod kept;
+mod nested;
 mod param;
 mod params;
 mod pass;
@@ -19,10 +21,12 @@ pub use capabilities::{Capabilities, LightKinds, ShadowKind, Source, WedgeUse};
 pub use condition::{Condition, LightFact};
 pub use domain::{Decimals, Domain, Value, Whole};
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
-pub use param::{Choice, Nested, Number, Param, ParamInfo, Setting, count, join};
+pub use kept::{KeptPictures, PictureKey, PictureToKeep};
+pub use nested::Nested;
+pub use param::{Choice, Number, Param, ParamInfo, Setting, count, join};
 pub use params::{LIGHT_FRAME, Params, SETTING_WITHOUT_EFFECT};
 pub use pass::{DrawRole, Pass, PassRole, Roles, apart};
-pub use wedges::{SceneWedges, WedgeKind};
+pub use wedges::{CarryChannels, SceneWedges, WedgeKind};
 
 use crate::geometry::caster::RefusedCaster;
 use crate::truth::oracle::cache::{CacheWarning, OracleCache};
@@ -59,6 +63,21 @@ pub trait Technique: Sync {
         params: &Params,
     ) -> Result<Frame, TechniqueError>;
 
+    /// The same frame after another one of an animation, of which `kept` holds what it
+    /// asked to keep: bits are those of [`Technique::frame`], draws may be fewer.
+    ///
+    /// # Errors
+    /// As the frame.
+    fn frame_after(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        _kept: &KeptPictures,
+    ) -> Result<Frame, TechniqueError> {
+        self.frame(scene, size, params)
+    }
+
     /// The image on the rectangle lights of its frame, which the truth about them has
     /// too; `None` for lights of one colour.
     ///
@@ -94,6 +113,15 @@ pub trait Technique: Sync {
         _scene: &Scene,
         _params: &Params,
     ) -> Result<Option<SceneWedges>, TechniqueError> {
+        Ok(None)
+    }
+
+    /// How the attachments of its wedge passes, which each begin without coverage, are
+    /// shared by coverage and carries; `None` where nothing is carried.
+    ///
+    /// # Errors
+    /// As the frame: settings that rule each other out.
+    fn carry_channels(&self, _params: &Params) -> Result<Option<CarryChannels>, TechniqueError> {
         Ok(None)
     }
 }

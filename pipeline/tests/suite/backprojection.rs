@@ -36,6 +36,29 @@ fn few_bits_fail_where_many_do_not() {
     assert!(many.rmse < 0.5 * some.rmse && some.rmse < 0.8 * few.rmse);
 }
 
+/// Bits that are in no line along the light's sides tell places of edges along them n
+/// times as finely.
+#[test]
+fn turned_bits_are_finer_along_edges() {
+    for bits in ["bits=4", "bits=16"] {
+        let of = |set: &[&str]| {
+            let set = [&[bits, "map-size=64"], set].concat();
+            plate_error("bitmask", 4.9, &set).0
+        };
+        let (grid, turned) = (of(&["pattern=grid"]), of(&["pattern=rotated-grid"]));
+        println!("{bits}: {grid:?} {turned:?}");
+        assert!(turned.rmse < 0.6 * grid.rmse, "{bits}: {grid:?} {turned:?}");
+    }
+    for name in ["cylinder", "creature"] {
+        let scene = scene(name);
+        let truth = truth(&scene);
+        let of = |set: &str| error("bitmask", &scene, &truth, &["bits=4", set]).rmse;
+        let [grid, turned] = ["pattern=grid", "pattern=rotated-grid"].map(of);
+        println!("{name}: {grid} {turned}");
+        assert!(turned < grid, "{name}: {grid} {turned}");
+    }
+}
+
 /// Errors on scenes with everything in them; bounds hold what was measured with some
 /// room.
 #[test]
@@ -68,10 +91,11 @@ fn hidden(name: &str, scene: &str, set: &[&str]) -> Vec<f64> {
 #[test]
 fn bits_hide_no_more_than_areas() {
     for scene in ["parallel-plates", "cylinder", "creature", "spheres"] {
-        for side in [8u32, 16] {
+        for (side, pattern) in [(8u32, "grid"), (16, "grid"), (16, "rotated-grid")] {
             let bits = format!("bits={side}");
+            let pattern = format!("pattern={pattern}");
             let areas = hidden("backprojection", scene, &[]);
-            let bits = hidden("bitmask", scene, &[&bits]);
+            let bits = hidden("bitmask", scene, &[&bits, &pattern]);
             let excess: Vec<f64> = bits.iter().zip(&areas).map(|(b, a)| b - a).collect();
             let mean = excess.iter().sum::<f64>() / excess.len() as f64;
             let most = excess.iter().fold(0.0f64, |a, b| a.max(*b));

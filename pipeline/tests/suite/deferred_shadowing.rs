@@ -21,29 +21,29 @@ use gnomon_raster::GpuConfig;
 
 use crate::drawing::{drawn, drawn_on};
 
-const TECHNIQUE: &str = "deferred-shadowing";
-const SIZE: [u32; 2] = [96, 64];
+pub(crate) const TECHNIQUE: &str = "deferred-shadowing";
+pub(crate) const SIZE: [u32; 2] = [96, 64];
 
-fn shown(scene: &Scene, set: &[&str]) -> Rendered {
+pub(crate) fn shown(scene: &Scene, set: &[&str]) -> Rendered {
     drawn(scene, TECHNIQUE, set, SIZE)
 }
 
-fn figure(done: &Rendered, name: &str) -> f64 {
+pub(crate) fn figure(done: &Rendered, name: &str) -> f64 {
     let found = done.figures.iter().find(|f| f.name == name);
     found
         .unwrap_or_else(|| panic!("no '{name}': {:?}", done.figures))
         .value
 }
 
-fn solid(name: &str, shape: Shape, shading: Shading, material: Material) -> Object {
+pub(crate) fn solid(name: &str, shape: Shape, shading: Shading, material: Material) -> Object {
     Object::new(name, shape.into_mesh(shading).unwrap(), material)
 }
 
-fn flat(name: &str, shape: Shape) -> Object {
+pub(crate) fn flat(name: &str, shape: Shape) -> Object {
     solid(name, shape, Shading::Flat, Material::matt([0.8, 0.7, 0.6]))
 }
 
-fn sky(side: usize) -> Environment {
+pub(crate) fn sky(side: usize) -> Environment {
     let settings = MapSettings {
         side,
         ..MapSettings::default()
@@ -51,7 +51,7 @@ fn sky(side: usize) -> Environment {
     Environment::open("sky", settings).unwrap()
 }
 
-fn lit_by(mut scene: Scene, map: &Environment) -> Scene {
+pub(crate) fn lit_by(mut scene: Scene, map: &Environment) -> Scene {
     let fit = FitSettings {
         lights: 6,
         ..FitSettings::default()
@@ -66,7 +66,7 @@ fn alone(object: Object) -> Scene {
 }
 
 /// A ball over a floor, and a plate between them that touches neither's box.
-fn two_over_a_floor() -> Scene {
+pub(crate) fn two_over_a_floor() -> Scene {
     let plate = shape::cuboid(DVec3::new(0.3, 0.5, 0.0), DVec3::new(1.0, 0.06, 0.8));
     let ball = shape::icosphere(2, 0.4, DVec3::new(-0.2, 1.3, 0.1));
     Scene::new(
@@ -287,7 +287,7 @@ fn bits_under_an_environment_do_not_depend_on_execution() {
     }
 }
 
-const MOVING: &str = r#"
+pub(crate) const MOVING: &str = r#"
 name = "moving"
 [camera]
 eye = [0.5, 2.0, 4.0]
@@ -309,7 +309,7 @@ mesh.box = { size = [0.4, 1.2, 0.4] }
 translate = [-0.9, 0.6, -0.4]
 "#;
 
-fn at(text: &str, time: f64) -> Scene {
+pub(crate) fn at(text: &str, time: f64) -> Scene {
     let mut moment = file::Moment {
         time,
         outside: Outside::Refused,
@@ -376,7 +376,7 @@ fn coarse_meshes_are_warned_of() {
 #[test]
 fn maps_come_near_the_reference() {
     let scene = lit_by(two_over_a_floor(), &sky(32));
-    let map = &scene.environment.as_ref().unwrap().map.cube;
+    let map = &scene.environment.as_ref().unwrap().map;
     let directions = Directions {
         count: 1024,
         seed: 1,

@@ -112,6 +112,32 @@ fn cells_help_where_kernels_hold_several_depths() {
     }
 }
 
+/// What tables cannot hold is said: exponents beyond their bits, and objects that are in
+/// their own mask.
+#[test]
+fn limits_are_told() {
+    let scene = scene("cylinder");
+    let told = |name: &str, set: &[&str], code: &str| {
+        let warnings = by(name, &scene, set).warnings;
+        warnings.iter().any(|w| w.code == code)
+    };
+    let beyond = "exponent-beyond-tables";
+    assert!(!told("evsm", &[], beyond) && !told("evsm", &["exponent=3"], beyond));
+    assert!(told("evsm", &["exponent=40"], beyond));
+    let huge = by("evsm", &scene, &["exponent=1e300"]);
+    assert!(huge.warnings.iter().any(|w| w.code == beyond));
+    assert!(huge.warnings.iter().all(|w| w.code != "nan"));
+    let casting = "receivers-that-cast";
+    assert!(told("soler-sillion", &[], casting) && !told("vsm", &[], casting));
+    let mut apart = scene.clone();
+    apart
+        .objects
+        .iter_mut()
+        .for_each(|o| o.receives &= !o.casts);
+    let warnings = by("soler-sillion", &apart, &[]).warnings;
+    assert!(warnings.iter().all(|w| w.code != casting), "{warnings:?}");
+}
+
 #[test]
 fn bad_parameters_are_refused() {
     let (scene, _) = plates(3.0);

@@ -1,5 +1,6 @@
 //! Smoothies (Chan and Durand 2003): order, umbrae, widths, roughness of edges and cost.
 
+use crate::drawing::as_published;
 use std::sync::Arc;
 
 use crate::map_support::{figure, plates, sized};
@@ -7,6 +8,7 @@ use glam::{DMat4, DVec3};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::{Params, PassRole, VisibilityOutput};
 use gnomon_pipeline::techniques::find;
+use gnomon_pipeline::truth::metrics::roughness::roughness;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::truth::oracle::area::{LightRegion, VisibilityImage};
 use gnomon_pipeline::world::light::{Light, LightShape};
@@ -31,6 +33,9 @@ fn solid(name: &str, shape: Shape) -> Object {
 /// blending or without: the visibility that it leaves.
 fn in_order(scene: &Scene, set: &[&str], reversed: bool, blended: bool) -> Vec<f32> {
     let technique = find("smoothies").unwrap();
+    let set = as_published(technique)
+        .into_iter()
+        .chain(set.iter().copied());
     let params = Params::parse(technique, set).unwrap();
     let mut frame = technique.frame(scene, SIZE, &params).unwrap();
     let roles = frame.roles.passes().to_vec();
@@ -202,43 +207,26 @@ fn turned_plate() -> Scene {
     Scene::new(camera, vec![light], vec![floor, plate])
 }
 
-/// Roughness of a straight edge: how much visibility differs, RMS, along the edge, at the
-/// same distance from it; a line across the edge is fitted to each narrow strip of them.
-fn roughness(technique: &str, scene: &Scene, set: &[&str]) -> f64 {
+/// Roughness of the plate's edge, of which a strip is as wide as a few pixels.
+fn edge_roughness(technique: &str, scene: &Scene, set: &[&str]) -> f64 {
     let done = sized(technique, scene, set, [160, 120]).unwrap();
     let rays = scene.camera.eye_rays(160, 120);
     let edge = DVec3::new(libm::cos(0.37), 0.0, -libm::sin(0.37));
-    const BIN: f64 = 0.004;
-    let mut bins = vec![Vec::new(); 160];
+    let mut values = Vec::new();
     for (k, seen) in done.visibility.iter().enumerate() {
         let place = [k as u32 % 160, k as u32 / 160].map(|c| f64::from(c) + 0.5);
         let ray = rays.direction(place[0], place[1]);
         let at = rays.origin - ray * (rays.origin.y / ray.y);
-        let distance = (at.dot(edge) - 5.0 / 3.0) / BIN + 40.0;
+        let distance = at.dot(edge) - 5.0 / 3.0;
         let along = at.dot(edge.cross(DVec3::Y));
-        if along.abs() < 0.8 && (0.0..160.0).contains(&distance) {
-            bins[distance as usize].push([distance, f64::from(*seen)]);
+        if along.abs() < 0.8 && (-0.16..0.48).contains(&distance) {
+            values.push([distance, f64::from(*seen)]);
         }
     }
-    let (mut sum, mut count) = (0.0, 0);
-    for bin in bins.iter().filter(|b| b.len() > 8) {
-        sum += off_a_line(bin);
-        count += bin.len();
-    }
-    let found = (sum / f64::from(count as u32)).sqrt();
-    println!("{technique} {set:?}: roughness {found} over {count}");
+    assert!(values.len() > 1000, "{}", values.len());
+    let found = roughness(values, 0.004);
+    println!("{technique} {set:?}: roughness {found}");
     found
-}
-
-/// Sum of the squares by which values differ from the line that fits them best.
-fn off_a_line(points: &[[f64; 2]]) -> f64 {
-    let n = points.len() as f64;
-    let mean = |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / n;
-    let [x, y] = [mean(0), mean(1)];
-    let sum = |f: &dyn Fn(f64, f64) -> f64| points.iter().map(|p| f(p[0] - x, p[1] - y)).sum();
-    let (xx, xy): (f64, f64) = (sum(&|a, _| a * a), sum(&|a, b| a * b));
-    let slope = xy / xx.max(1e-12);
-    sum(&|a, b| (b - slope * a) * (b - slope * a))
 }
 
 /// T: texels that shadow maps show at 1024² are masked; at 256² they are less so.
@@ -247,7 +235,7 @@ fn aliasing_is_masked() {
     let scene = turned_plate();
     let of = |technique: &str, size: &str, more: &[&str]| {
         let set = [more, &["fit=receivers", size]].concat();
-        roughness(technique, &scene, &set)
+        edge_roughness(technique, &scene, &set)
     };
     let [fine, coarse] = ["map-size=1024", "map-size=256"];
     let hard = [fine, coarse].map(|size| of("shadow-map", size, &[]));

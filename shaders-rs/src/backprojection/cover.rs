@@ -60,6 +60,9 @@ impl LightCover for AreaSum {
 /// Most bits along a side of the field.
 pub const MOST_BITS: usize = 16;
 
+/// Bits by row.
+pub type BitRows<L> = [U32<L>; MOST_BITS];
+
 /// Bits of a field over the light, each the centre of a cell (Schwarz and Stamminger
 /// 2007): what is hidden twice counts once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,30 +82,67 @@ impl BitField {
         let bits = (place.clamp(-1.0, 1.0) + 1.0) * (0.5 * side) - 0.5;
         bits.ceil().clamp(0.0, side).to_i32()
     }
+}
 
-    /// Bits from the first to before the second.
-    #[inline(always)]
-    fn mask<L: Lanes>(l: L, [low, high]: [I32<L>; 2]) -> U32<L> {
-        let places = [low, high.max(low)];
-        let [low, high] = each2(
-            #[inline(always)]
-            |i| power_of_two(l, places[i]).to_i32(),
-        );
-        (high - low).to_u32()
+/// Bits of a row from the first to before the second.
+#[inline(always)]
+pub(super) fn columns_of<L: Lanes>(l: L, [low, high]: [I32<L>; 2]) -> U32<L> {
+    let places = [low, high.max(low)];
+    let [low, high] = each2(
+        #[inline(always)]
+        |i| power_of_two(l, places[i]).to_i32(),
+    );
+    (high - low).to_u32()
+}
+
+/// The rows that any lane's patch touches, as bits: most patches are as high as one or
+/// two.
+#[inline(always)]
+pub(super) fn rows_in_use<L: Lanes>(l: L, rows: [I32<L>; 2], patch: &Patch<L>) -> u32 {
+    let own = columns_of(l, rows);
+    let own = patch.some.select_u32(own, U32::splat(l, 0)).to_array();
+    let mut all = 0;
+    for lane in own {
+        all |= lane;
     }
+    all
+}
+
+/// The lowest row that is left, which is taken off.
+#[inline(always)]
+pub(super) fn next_row<'c, L: Lanes>(
+    rest: &mut u32,
+    covered: &'c mut BitRows<L>,
+) -> Option<(usize, &'c mut U32<L>)> {
+    let row = rest.trailing_zeros() as usize;
+    *rest &= rest.wrapping_sub(1);
+    match covered.get_mut(row) {
+        Some(bits) => Some((row, bits)),
+        None => None,
+    }
+}
+
+/// The share of a field of so many bits along a side that is set.
+#[inline(always)]
+pub(super) fn share_of<L: Lanes>(l: L, covered: &BitRows<L>, side: u32) -> F32<L> {
+    let mut count = U32::splat(l, 0);
+    for pair in covered.chunks_exact(2) {
+        count = count + ones(l, pair[0] | (pair[1] << 16));
+    }
+    count.to_i32().to_f32() * (1.0 / (side * side) as f32)
 }
 
 impl LightCover for BitField {
     /// A row each.
-    type Covered<L: Lanes> = [U32<L>; MOST_BITS];
+    type Covered<L: Lanes> = BitRows<L>;
 
     #[inline(always)]
-    fn nothing<L: Lanes>(&self, l: L) -> [U32<L>; MOST_BITS] {
+    fn nothing<L: Lanes>(&self, l: L) -> BitRows<L> {
         [U32::splat(l, 0); MOST_BITS]
     }
 
     #[inline(always)]
-    fn add<L: Lanes>(&self, l: L, covered: &mut [U32<L>; MOST_BITS], patch: &Patch<L>) {
+    fn add<L: Lanes>(&self, l: L, covered: &mut BitRows<L>, patch: &Patch<L>) {
         if !patch.some.any() {
             return;
         }
@@ -115,8 +155,9 @@ impl LightCover for BitField {
             |k| self.bit(patch.y[k]),
         );
         let none = U32::splat(l, 0);
-        let mask = patch.some.select_u32(Self::mask(l, columns), none);
-        for (row, bits) in covered.iter_mut().enumerate().take(self.side as usize) {
+        let mask = patch.some.select_u32(columns_of(l, columns), none);
+        let mut rest = rows_in_use(l, rows, patch);
+        while let Some((row, bits)) = next_row(&mut rest, covered) {
             let row = I32::splat(l, row as i32);
             let inside = row.ge(rows[0]) & row.lt(rows[1]);
             *bits = *bits | inside.select_u32(mask, none);
@@ -124,12 +165,8 @@ impl LightCover for BitField {
     }
 
     #[inline(always)]
-    fn hidden<L: Lanes>(&self, l: L, covered: &[U32<L>; MOST_BITS]) -> F32<L> {
-        let mut count = U32::splat(l, 0);
-        for pair in covered.chunks_exact(2) {
-            count = count + ones(l, pair[0] | (pair[1] << 16));
-        }
-        count.to_i32().to_f32() * (1.0 / (self.side * self.side) as f32)
+    fn hidden<L: Lanes>(&self, l: L, covered: &BitRows<L>) -> F32<L> {
+        share_of(l, covered, self.side)
     }
 }
 

@@ -6,6 +6,7 @@
 //! * [`region`]: which texels have patches on the light, by a pyramid of least depths
 //! * [`cover`]: what patches hide: the sum of their areas (Guennebaud et al. 2006), or
 //!   bits of a field over the light (Schwarz and Stamminger 2007)
+//! * [`turned`]: the same with a field of which no two bits are in line
 //!
 //! In tangents the light, seen from a receiver at distance d through the plane at
 //! distance z, is a rectangle of half width `h (1/z - 1/d)` round the receiver's own
@@ -16,6 +17,7 @@
 pub mod cover;
 pub mod patches;
 pub mod region;
+pub mod turned;
 
 use gnomon_raster::shader::Fragment;
 use gnomon_raster::{F32, Lanes, uniforms};

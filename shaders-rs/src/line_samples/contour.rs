@@ -129,15 +129,15 @@ impl LineSamples {
         let less = if kind > 1.0 { 1.0 } else { 0.0 };
         let jump = (a.select_f32(one, zero) - b.select_f32(one, zero)) * factor - less;
         Image {
-            from: self.relative_end(l, r, from),
-            to: self.relative_end(l, r, to),
+            from: self.seen_from_here(l, r, from),
+            to: self.seen_from_here(l, r, to),
             jump: jump * r.mirror,
             some: jump.ne(zero) & !own,
         }
     }
 
     #[inline(always)]
-    fn relative_end<L: Lanes>(&self, l: L, r: &Receiver<L>, end: [f32; 4]) -> [F32<L>; 3] {
+    fn seen_from_here<L: Lanes>(&self, l: L, r: &Receiver<L>, end: [f32; 4]) -> [F32<L>; 3] {
         let away = each3(
             #[inline(always)]
             |k| F32::splat(l, end[k]) - r.at[k],

@@ -1,12 +1,13 @@
 //! `gnomon render --frames`: an animation, frame after frame.
 //!
-//! Frame k shows the time `T + k / F`. Everything of a frame is made for it alone,
-//! but for the map of an environment, which is read once: so it has the bits of
-//! the single picture of that time.
+//! Frame k shows the time `T + k / F` and has the bits of the single picture of that time.
+//! The map of an environment is read once, and what a technique keeps from frame to frame
+//! is known by what it was drawn from; everything else of a frame is made for it alone.
 
 use std::path::{Path, PathBuf};
 
-use gnomon_pipeline::measure::render::{Rendered, render};
+use gnomon_pipeline::measure::render::{Rendered, render_next};
+use gnomon_pipeline::technique::KeptPictures;
 use gnomon_pipeline::techniques::Registry;
 use serde::Serialize;
 
@@ -50,6 +51,7 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
     let progress = Progress::new(u64::from(count) * (2 + args.overlay.len() as u64));
     let mut table = Table::new("Frames", &["frame", "time", "took", "bytes", "color"]);
     let (mut frames, mut last) = (Vec::new(), None);
+    let mut kept = KeptPictures::default();
     for frame in 0..count {
         progress.doing(format!("frame {frame}"));
         let time = args.frame.time_of(frame);
@@ -59,7 +61,7 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         let params = args.frame.params_of(&params, frame);
         let job = RenderJob::of(args, technique, params, scene, Some(out))?;
         let ahead = (args.frame).prepare(technique, &job.params, &job.scene, &progress)?;
-        let mut done = render(&job.scene, technique, &job.params, &job.settings)?;
+        let mut done = render_next(&job.scene, technique, &job.params, &job.settings, &mut kept)?;
         done.warnings.extend(ahead);
         progress.step();
         let files = write(&job, args, &done, &progress)?;

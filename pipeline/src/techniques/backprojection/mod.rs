@@ -3,7 +3,7 @@
 //!
 //! `backprojection` adds the patches' areas, so that what is hidden twice counts twice;
 //! `bitmask` sets bits of a field over the light, so that it counts once, in steps of the
-//! field. Both take the same patches, with gaps filled to neighbours; a pyramid of least
+//! field, whose bits may be turned out of line. Both take the same patches, with gaps filled to neighbours; a pyramid of least
 //! depths bounds which texels can have some.
 //!
 //! Exact where lights are rectangles parallel to the picture, as those are that planar
@@ -20,6 +20,7 @@ use gnomon_raster::shader::FragmentStage;
 use gnomon_shaders::backprojection::Backprojection;
 use gnomon_shaders::backprojection::cover::{AreaSum, BitField, LightCover};
 use gnomon_shaders::backprojection::patches::Gaps;
+use gnomon_shaders::backprojection::turned::TurnedBits;
 use gnomon_shaders::shadow_maps::Shadow;
 
 use self::pyramid::Pyramid;
@@ -75,6 +76,22 @@ const BITS: Param<u32> = Param::<u32>::power_of_two(
 )
 .unit("bits");
 
+choices! {
+    /// Where the bits are.
+    enum Places {
+        /// Centres of cells.
+        Grid = "grid",
+        /// Not in line.
+        Rotated = "rotated-grid",
+    }
+}
+
+const PATTERN: Param<Places> = Param::choice(
+    "pattern",
+    Places::Grid.word(),
+    "bits at the centres of a grid's cells (the paper's plain case), or that grid turned so that no two are in line along the light's sides",
+);
+
 const MAP_SIZE: Param<u32> = Param::<u32>::power_of_two(
     "map-size",
     128,
@@ -98,6 +115,7 @@ struct Settings {
     gaps: Gaps,
     refinements: u32,
     bits: u32,
+    places: Places,
     horizon: bool,
     maps: MapSettings,
     frame: FrameSettings,
@@ -114,6 +132,10 @@ impl Settings {
             bits: match of {
                 BackprojectedMaps::Areas => 0,
                 BackprojectedMaps::Bits => params.get(&BITS)?,
+            },
+            places: match of {
+                BackprojectedMaps::Areas => Places::Grid,
+                BackprojectedMaps::Bits => params.get(&PATTERN)?,
             },
             horizon: params.get(&HORIZON)?,
             maps: MapSettings::read(params)?,
@@ -157,7 +179,7 @@ impl Technique for BackprojectedMaps {
                 FrameSettings::PARAMS
             ),
             Self::Bits => param_list!(
-                &[BITS.info, GAPS.info, REFINE.info],
+                &[BITS.info, PATTERN.info, GAPS.info, REFINE.info],
                 MAPS,
                 &[HORIZON.info],
                 FrameSettings::PARAMS
@@ -177,7 +199,6 @@ impl Technique for BackprojectedMaps {
     ) -> Result<Frame, TechniqueError> {
         let settings = Settings::read(*self, params)?;
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,
@@ -189,13 +210,15 @@ impl Technique for BackprojectedMaps {
         mapped.prefiltered_frame(
             |recording| Pyramid::create(side, recording),
             |light| Sources::centre(self.name(), scene, light),
-            |pyramid, look_up| match self {
-                Self::Areas => looked(AreaSum, &settings, pyramid, look_up, |s| s.stage()),
-                Self::Bits => {
-                    let field = BitField {
-                        side: settings.bits,
-                    };
-                    looked(field, &settings, pyramid, look_up, |s| s.stage())
+            |pyramid, look_up| {
+                let side = settings.bits;
+                let all = (&settings, pyramid, look_up);
+                match (self, settings.places) {
+                    (Self::Areas, _) => looked(AreaSum, all, |s| s.stage()),
+                    (Self::Bits, Places::Grid) => looked(BitField { side }, all, |s| s.stage()),
+                    (Self::Bits, Places::Rotated) => {
+                        looked(TurnedBits { side }, all, |s| s.stage())
+                    }
                 }
             },
         )
@@ -205,9 +228,7 @@ impl Technique for BackprojectedMaps {
 /// The pyramid of a view, and the shader that projects its texels.
 fn looked<C: LightCover>(
     cover: C,
-    settings: &Settings,
-    pyramid: &Pyramid,
-    look_up: &LookUp<'_>,
+    (settings, pyramid, look_up): (&Settings, &Pyramid, &LookUp<'_>),
     stage: impl FnOnce(Shadow<Backprojection<C>>) -> FragmentStage,
 ) -> Looked {
     let shader = Backprojection {
@@ -226,5 +247,6 @@ fn looked<C: LightCover>(
         stage: stage(look_up.whole(shader)),
         textures: vec![pyramid.binding()],
         figures: Vec::new(),
+        warnings: Vec::new(),
     }
 }

@@ -10,9 +10,10 @@ use gnomon_raster::{
 };
 use gnomon_shaders::deferred::obscured::{DistantVisibility, OcclusionMap, Transported};
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Occluders};
 use super::bodies::{Body, Evaluation, bodies, normal_of};
 use super::environment::bilinear;
+use super::keeping::Keeping;
 use super::notes::Found;
 use super::settings::Settings;
 use super::shadows::{Job, Receivers, turns};
@@ -21,14 +22,14 @@ use super::sources::Source;
 use crate::parts::passes::{LitTest, SceneDraws, equal_depth};
 use crate::parts::shadowed_frame::{LightTurn, ShadowedFrame};
 use crate::parts::visibility::{VisibilityTexture, attachment};
-use crate::technique::{Frame, Pass, PassRole, TechniqueError};
+use crate::technique::{Frame, KeptPictures, Pass, PassRole, TechniqueError};
 use crate::world::mesh::widen;
 use crate::world::scene::Scene;
 
 /// The frame of a scene with lights of its own.
 pub(super) fn frame(
     scene: &Scene,
-    size: [u32; 2],
+    (size, before): ([u32; 2], Option<&KeptPictures>),
     settings: &Settings,
 ) -> Result<Frame, TechniqueError> {
     let mut frame = ShadowedFrame::new(scene, size, &settings.frame)?.with_ambient();
@@ -54,12 +55,18 @@ pub(super) fn frame(
     found.lights(frame.lights.len(), settings);
     let test = LitTest::Visibility(VisibilityTexture::red(visibility));
     let last = frame.lights.first().copied();
-    frame.lit(test, |turn| {
-        let passes = distant.passes(turn, &mut found);
+    let mut keeping = before.map(|before| Keeping::new(before, &frame.draws));
+    let frame = frame.lit(test, |turn| {
+        let passes = distant.passes(turn, &mut found, keeping.as_mut())?;
         if Some(turn.number) == last {
+            found.keeping(keeping.as_ref());
             found.tell(&bodies, turn.notes);
         }
         Ok(passes)
+    })?;
+    Ok(Frame {
+        keep: keeping.map_or(Vec::new(), Keeping::finish),
+        ..frame
     })
 }
 
@@ -72,7 +79,12 @@ struct Distant<'f, 'a> {
 }
 
 impl<'a> Distant<'_, 'a> {
-    fn passes(&self, turn: &LightTurn<'_, 'a>, found: &mut Found) -> Vec<Pass> {
+    fn passes(
+        &self,
+        turn: &mut LightTurn<'_, 'a>,
+        found: &mut Found,
+        mut keeping: Option<&mut Keeping<'_>>,
+    ) -> Result<Vec<Pass>, TechniqueError> {
         let label = turn.labels();
         let source = Source::of_light(turn.light());
         let jobs = self.receivers.jobs(0, &source, self.settings, |_| true);
@@ -82,12 +94,18 @@ impl<'a> Distant<'_, 'a> {
         found.maps.left_out += left_out;
         // What nothing else shades is shaded by itself, before all others.
         let mut passes = vec![self.own(turn, &sheets, &source, &label)];
-        for jobs in &turns {
-            let maps: Vec<_> = jobs.iter().flat_map(|j| j.maps.clone()).collect();
-            passes.extend(self.atlas.passes(&maps, self.bodies, turn.draws, &label));
-            passes.push(self.looked_up(turn, &sheets, &source, jobs, &label));
+        for jobs in turns.iter().filter(|t| t.iter().any(Job::hides)) {
+            let occluders = Occluders {
+                bodies: self.bodies,
+                draws: turn.draws,
+                label: &label,
+            };
+            let keeping = keeping.as_deref_mut();
+            let own = self.atlas.fill(jobs, &occluders, turn.recording, keeping)?;
+            passes.extend(own.passes);
+            passes.push(self.looked_up(turn, &sheets, &source, (jobs, own.maps), &label));
         }
-        passes
+        Ok(passes)
     }
 
     /// Self-visibility of every body that takes shadow.
@@ -100,7 +118,8 @@ impl<'a> Distant<'_, 'a> {
     ) -> Pass {
         let receives = |s: &&Sheet<'_, '_>| s.surface.object.receives;
         let own = sheets.all.iter().filter(receives);
-        let draws = own.map(|s| self.draw(turn.draws, s, source, Vec::new()));
+        let nothing = self.atlas.shared();
+        let draws = own.map(|s| self.draw(turn.draws, s, source, (Vec::new(), nothing)));
         self.pass(
             turn,
             LoadOp::Clear([1.0; 4]),
@@ -115,16 +134,17 @@ impl<'a> Distant<'_, 'a> {
         turn: &LightTurn<'_, 'a>,
         sheets: &Sheets<'_, 'a>,
         source: &Source,
-        jobs: &[Job],
+        (jobs, texture): (&[Job], TextureId),
         label: &dyn Fn(&str) -> String,
     ) -> Pass {
         let (mut cell, mut draws) = (0, Vec::new());
         for job in jobs {
             let look_up = |(k, map)| self.atlas.look_up(map, cell + k, turn.view());
-            let maps: Vec<_> = job.maps.iter().enumerate().map(look_up).collect();
-            cell += maps.len();
-            let own = sheets.all.iter().filter(|s| s.body == job.body);
-            draws.extend(own.map(|s| self.draw(turn.draws, s, source, maps.clone())));
+            let maps: Vec<_> = job.placed().map(look_up).collect();
+            cell += job.maps.len();
+            let hidden = !maps.is_empty();
+            let own = sheets.all.iter().filter(|s| hidden && s.body == job.body);
+            draws.extend(own.map(|s| self.draw(turn.draws, s, source, (maps.clone(), texture))));
         }
         self.pass(turn, LoadOp::Load, draws, label("occlusion"))
     }
@@ -150,7 +170,7 @@ impl<'a> Distant<'_, 'a> {
         draws: &SceneDraws<'_>,
         sheet: &Sheet<'_, '_>,
         source: &Source,
-        maps: Vec<OcclusionMap>,
+        (maps, texture): (Vec<OcclusionMap>, TextureId),
     ) -> Draw {
         let vertices = self.visible(draws, sheet, source);
         let shader = DistantVisibility {
@@ -170,7 +190,7 @@ impl<'a> Distant<'_, 'a> {
             color_targets: vec![ColorTargetState::OPAQUE],
         };
         Draw {
-            textures: vec![bilinear(self.atlas.texture())],
+            textures: vec![bilinear(texture)],
             ..sheet.draw(pipeline, &vertices)
         }
     }

@@ -13,19 +13,21 @@ use gnomon_shaders::deferred::lit::LessObscured;
 use gnomon_shaders::deferred::obscured::{Highlight, ObscuredRadiance, Transported};
 use gnomon_shaders::transform::Surfaces;
 
-use super::atlas::Atlas;
-use super::bodies::{Body, Evaluation, bodies, coefficients};
+use super::atlas::{Atlas, Occluders};
+use super::bodies::{Body, Evaluation, bodies};
+use super::keeping::Keeping;
 use super::light::HarmonicLight;
 use super::notes::Found;
 use super::radiance::{Radiance, RadianceTextures, float_format, is_glossy};
 use super::settings::Settings;
-use super::shadows::{Job, Receivers, turns};
-use super::sheets::{Sheet, Sheets};
+use super::shadows::{Job, turns};
+use super::sheets::Sheets;
 use super::sources::{Source, of_environment};
-use crate::parts::passes::equal_depth;
+use super::transported::{jobs, transported};
+use crate::parts::passes::{SceneDraws, Targets, equal_depth};
 use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::parts::visibility::{VisibilityTexture, attachment, binding};
-use crate::technique::{Frame, Pass, PassRole, TechniqueError};
+use crate::technique::{Frame, KeptPictures, Pass, PassRole, TechniqueError};
 use crate::world::environment::PlacedEnvironment;
 use crate::world::mesh::narrow;
 use crate::world::scene::Scene;
@@ -34,7 +36,7 @@ use crate::world::scene::Scene;
 pub(super) fn frame(
     scene: &Scene,
     placed: &PlacedEnvironment,
-    size: [u32; 2],
+    (size, before): ([u32; 2], Option<&KeptPictures>),
     settings: &Settings,
 ) -> Result<Frame, TechniqueError> {
     let mut frame = ShadowedFrame::new(scene, size, &settings.frame)?.with_ambient();
@@ -49,11 +51,21 @@ pub(super) fn frame(
         highlights: frame.draws.has_highlights(),
     };
     let mut deferred = Deferred::new(given, size, &mut frame.recording)?;
-    let passes = deferred.passes(&frame);
+    let mut keeping = before.map(|before| Keeping::new(before, &frame.draws));
+    let drawn = Drawn {
+        draws: &frame.draws,
+        targets: &frame.targets,
+    };
+    let passes = deferred.passes(drawn, &mut frame.recording, keeping.as_mut())?;
+    deferred.found.keeping(keeping.as_ref());
     deferred.found.tell(&bodies, &mut frame.notes);
     let visibility = VisibilityTexture::red(deferred.visibility);
     passes.into_iter().for_each(|pass| frame.push(pass));
-    frame.finish(visibility.output())
+    let frame = frame.finish(visibility.output())?;
+    Ok(Frame {
+        keep: keeping.map_or(Vec::new(), Keeping::finish),
+        ..frame
+    })
 }
 
 /// What a frame is made from.
@@ -72,6 +84,13 @@ struct Given<'f, 'a> {
 struct Obscured {
     diffuse: TextureId,
     glossy: Option<TextureId>,
+}
+
+/// What a frame draws, and where.
+#[derive(Clone, Copy)]
+struct Drawn<'f, 'a> {
+    draws: &'f SceneDraws<'a>,
+    targets: &'f Targets,
 }
 
 struct Deferred<'f, 'a> {
@@ -152,16 +171,21 @@ impl<'f, 'a> Deferred<'f, 'a> {
         })
     }
 
-    fn passes(&mut self, frame: &ShadowedFrame<'a>) -> Vec<Pass> {
+    fn passes(
+        &mut self,
+        frame: Drawn<'_, 'a>,
+        recording: &mut Recording,
+        mut keeping: Option<&mut Keeping<'_>>,
+    ) -> Result<Vec<Pass>, TechniqueError> {
         let radiance = Radiance {
             bodies: self.bodies,
             sheets: self.sheets,
             light: &self.light,
             settings: self.settings,
-            draws: &frame.draws,
+            draws: frame.draws,
             textures: &self.radiance,
         };
-        let mut passes = radiance.passes(&frame.targets);
+        let mut passes = radiance.passes(frame.targets);
         let jobs = std::mem::take(&mut self.jobs);
         let (mut turns, left_out) = turns(jobs, self.atlas.capacity());
         self.found.maps.left_out += left_out;
@@ -169,20 +193,27 @@ impl<'f, 'a> Deferred<'f, 'a> {
             turns.push(Vec::new()); // the images have to be cleared
         }
         for (turn, jobs) in turns.iter().enumerate() {
-            if !jobs.is_empty() {
-                let maps: Vec<_> = jobs.iter().flat_map(|j| j.maps.clone()).collect();
-                let label = |what: &str| what.to_owned();
-                let own = self.atlas.passes(&maps, self.bodies, &frame.draws, &label);
-                passes.extend(own);
-            }
-            passes.push(self.obscure(frame, jobs, turn == 0));
+            let occluders = Occluders {
+                bodies: self.bodies,
+                draws: frame.draws,
+                label: &|what: &str| what.to_owned(),
+            };
+            let keeping = keeping.as_deref_mut();
+            let own = (self.atlas).fill(jobs, &occluders, recording, keeping)?;
+            passes.extend(own.passes);
+            passes.push(self.obscure(frame, jobs, (own.maps, turn == 0)));
         }
         passes.push(self.lit(frame));
-        passes
+        Ok(passes)
     }
 
-    /// Adds what the maps in the atlas take.
-    fn obscure(&self, frame: &ShadowedFrame<'a>, jobs: &[Job], first: bool) -> Pass {
+    /// Adds what the maps in a texture take.
+    fn obscure(
+        &self,
+        frame: Drawn<'_, 'a>,
+        jobs: &[Job],
+        (texture, first): (TextureId, bool),
+    ) -> Pass {
         let load = if first {
             LoadOp::Clear([0.0; 4])
         } else {
@@ -191,12 +222,13 @@ impl<'f, 'a> Deferred<'f, 'a> {
         let mut draws = Vec::new();
         let mut cell = 0;
         for job in jobs {
-            let maps = job.maps.iter().enumerate();
             let view = &frame.draws.view;
-            let maps: Vec<_> = maps
-                .map(|(k, map)| self.atlas.look_up(map, cell + k, view))
-                .collect();
+            let look_up = |(k, map)| self.atlas.look_up(map, cell + k, view);
+            let maps: Vec<_> = job.placed().map(look_up).collect();
             cell += job.maps.len();
+            if maps.is_empty() {
+                continue;
+            }
             let shader = ObscuredRadiance {
                 energy: self.sources[job.light].energy.map(|e| e as f32),
                 combine: self.settings.combine,
@@ -205,7 +237,7 @@ impl<'f, 'a> Deferred<'f, 'a> {
             };
             draws.extend(
                 self.sheets_of(job)
-                    .map(|k| self.take(frame, job, k, &shader)),
+                    .map(|k| self.take(frame, job, (k, texture), &shader)),
             );
         }
         let images = std::iter::once(self.obscured.diffuse).chain(self.obscured.glossy);
@@ -228,9 +260,9 @@ impl<'f, 'a> Deferred<'f, 'a> {
 
     fn take(
         &self,
-        frame: &ShadowedFrame<'a>,
+        frame: Drawn<'_, 'a>,
         job: &Job,
-        sheet: usize,
+        (sheet, maps): (usize, TextureId),
         shader: &ObscuredRadiance,
     ) -> Draw {
         let view = &frame.draws.view;
@@ -258,13 +290,13 @@ impl<'f, 'a> Deferred<'f, 'a> {
             color_targets: vec![ColorTargetState::ADDITIVE; attachments],
         };
         Draw {
-            textures: vec![bilinear(self.atlas.texture())],
+            textures: vec![bilinear(maps)],
             ..own.draw(pipeline, vertices)
         }
     }
 
     /// What is left, onto the picture.
-    fn lit(&self, frame: &ShadowedFrame<'a>) -> Pass {
+    fn lit(&self, frame: Drawn<'_, 'a>) -> Pass {
         let images = [Some(self.radiance.image), Some(self.obscured.diffuse)];
         let glossy = [self.radiance.glossy_image(), self.obscured.glossy];
         let textures = || images.into_iter().chain(glossy).flatten().map(binding);
@@ -306,55 +338,4 @@ pub(super) fn bilinear(texture: TextureId) -> TextureBinding {
         texture,
         sampler: Sampler::bilinear(),
     }
-}
-
-/// Position, normal, and for each light T and, where something is glossy, V (§6.2.3), of a
-/// sheet's vertices; and whether any of them has some of a light.
-fn transported(
-    sheet: &Sheet<'_, '_>,
-    body: &Body<'_>,
-    sources: &[Source],
-    (evaluation, glossy): &(Evaluation, bool),
-    found: &mut Found,
-) -> (Arc<VertexBuffer>, Vec<bool>) {
-    let directions: Vec<DVec3> = sources
-        .iter()
-        .map(|s| body.own(s.at.towards_from(DVec3::ZERO)))
-        .collect();
-    let harmonics = evaluation.towards(&directions);
-    let mut reached = vec![false; sources.len()];
-    let mut data = Vec::new();
-    for &v in &sheet.vertices {
-        let (position, normal) = sheet.vertex(v);
-        data.extend(position.into_iter().chain(normal));
-        let own = coefficients(&sheet.transport, v as usize);
-        for (light, at) in harmonics.iter().enumerate() {
-            let [t, seen] = at.of(&own);
-            found.ringing(t);
-            let seen = if *glossy { seen.clamp(0.0, 1.0) } else { 0.0 };
-            reached[light] |= t > 0.0 || seen > 0.0;
-            data.extend([t.max(0.0) as f32, seen as f32]);
-        }
-    }
-    let stride = 6 + 2 * sources.len();
-    (Arc::new(VertexBuffer { data, stride }), reached)
-}
-
-fn jobs(
-    bodies: &[Body<'_>],
-    sheets: &Sheets<'_, '_>,
-    sources: &[Source],
-    transported: &[(Arc<VertexBuffer>, Vec<bool>)],
-    settings: &Settings,
-) -> Vec<Job> {
-    let receivers = Receivers::new(bodies, settings);
-    let reaches = |light: usize, body: usize| {
-        let own = sheets.all.iter().zip(transported);
-        own.clone()
-            .any(|(s, (_, reached))| s.body == body && reached[light])
-    };
-    let of_light = |(light, source): (usize, &Source)| {
-        receivers.jobs(light, source, settings, |body| reaches(light, body))
-    };
-    sources.iter().enumerate().flat_map(of_light).collect()
 }

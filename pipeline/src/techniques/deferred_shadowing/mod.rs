@@ -17,9 +17,8 @@
 //!
 //! # Cost of motion
 //!
-//! A frame is made anew from a scene, and so all maps are drawn in each; the paper keeps
-//! those of pairs that did not move. Transport, lights and harmonics of the map are kept
-//! by content.
+//! Maps of pairs that did not move are those of the frame before (see
+//! [`keeping`]); transport, lights and harmonics of the map are kept by content.
 //!
 //! Known errors, of the method: shadows of one object on another have the softness of
 //! one distance per map; light is smooth between vertices; six bands know no sharp
@@ -31,6 +30,7 @@ mod bodies;
 mod distant;
 mod environment;
 mod groups;
+mod keeping;
 mod light;
 mod notes;
 mod placing;
@@ -39,6 +39,7 @@ mod settings;
 mod shadows;
 mod sheets;
 mod sources;
+mod transported;
 
 use std::cell::RefCell;
 
@@ -46,7 +47,7 @@ use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::technique::{
-    Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
+    Capabilities, Frame, KeptPictures, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
 };
 use crate::truth::oracle::cache::{CacheWarning, OracleCache};
 use crate::world::scene::Scene;
@@ -97,15 +98,33 @@ impl Technique for DeferredShadowing {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let settings = Settings::read(params)?;
-        let environment = scene.environment.as_ref();
-        match environment.filter(|_| settings.frame.light.is_none()) {
-            None => distant::frame(scene, size, &settings),
-            Some(placed) => {
-                let mut dark = scene.clone();
-                dark.ambient = [0.0; 3]; // the residual is in L_s
-                environment::frame(&dark, placed, size, &settings)
-            }
+        frame(scene, (size, None), params)
+    }
+
+    fn frame_after(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        kept: &KeptPictures,
+    ) -> Result<Frame, TechniqueError> {
+        frame(scene, (size, Some(kept)), params)
+    }
+}
+
+/// A frame of a size, by itself or after another one that left something.
+fn frame(
+    scene: &Scene,
+    sequence: ([u32; 2], Option<&KeptPictures>),
+    params: &Params,
+) -> Result<Frame, TechniqueError> {
+    let settings = Settings::read(params)?;
+    let environment = scene.environment.as_ref();
+    match environment.filter(|_| settings.frame.light.is_none()) {
+        None => distant::frame(scene, sequence, &settings),
+        Some(placed) => {
+            // The residual is in L_s.
+            environment::frame(&scene.without_ambient(), placed, sequence, &settings)
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What is said of a frame: sizes, and everything that was limited or left out.
 
 use super::bodies::{Body, coarse_triangles};
+use super::keeping::Keeping;
 use super::settings::Settings;
 use super::shadows::MapCounts;
 use crate::parts::shadowed_frame::Notes;
@@ -17,6 +18,8 @@ pub(super) struct Found {
     map_bytes: usize,
     /// Vertices times lights at which transport rang below 0.
     ringing: usize,
+    /// Maps that the frame before left, where there is one.
+    kept: Option<usize>,
     pub(super) maps: MapCounts,
 }
 
@@ -38,6 +41,11 @@ impl Found {
         self.map_bytes = (settings.side * settings.side * texel) as usize;
     }
 
+    /// Takes note of what was kept of the frame before.
+    pub(super) fn keeping(&mut self, keeping: Option<&Keeping<'_>>) {
+        self.kept = keeping.map(Keeping::found);
+    }
+
     /// Counts a transport that is limited to 0.
     pub(super) fn ringing(&mut self, transport: f64) {
         self.ringing += usize::from(transport < 0.0);
@@ -56,11 +64,19 @@ impl Found {
             ("maps across their plane", self.maps.across_plane),
             ("transport below 0", self.ringing),
         ];
+        let drawn = self.maps.maps - self.maps.left_out;
+        let kept = self.kept.map(|kept| {
+            [
+                ("occlusion maps kept", kept),
+                ("occlusion maps drawn", drawn - kept),
+            ]
+        });
         let figure = |(name, value): (&str, usize)| Figure {
             name: name.to_owned(),
             value: value as f64,
         };
         notes.figures.extend(figures.map(figure));
+        notes.figures.extend(kept.into_iter().flatten().map(figure));
         notes.warnings.extend(bodies.iter().filter_map(coarse));
         if self.maps.left_out > 0 {
             let count = self.maps.left_out;

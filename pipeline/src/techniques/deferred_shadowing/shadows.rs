@@ -19,7 +19,22 @@ pub(super) struct Job {
     pub(super) body: usize,
     /// Number of the light.
     pub(super) light: usize,
-    pub(super) maps: Vec<PlacedMap>,
+    /// A place for each group of occluders, so that others keep theirs when a group
+    /// begins or ceases to hide anything.
+    pub(super) maps: Vec<Option<PlacedMap>>,
+}
+
+impl Job {
+    /// Whether anything is hidden.
+    pub(super) fn hides(&self) -> bool {
+        self.maps.iter().any(Option::is_some)
+    }
+
+    /// Maps with their numbers.
+    pub(super) fn placed(&self) -> impl Iterator<Item = (usize, &PlacedMap)> {
+        let maps = self.maps.iter().enumerate();
+        maps.filter_map(|(k, map)| Some((k, map.as_ref()?)))
+    }
 }
 
 impl<'b, 'a> Receivers<'b, 'a> {
@@ -40,8 +55,7 @@ impl<'b, 'a> Receivers<'b, 'a> {
         self.all.iter().map(|(_, _, groups)| groups.len()).sum()
     }
 
-    /// What each receiver needs under a light; those that need nothing are left out, and
-    /// those that `wanted` does not want.
+    /// What each receiver needs under a light; nothing where `wanted` does not want it.
     pub(super) fn jobs(
         &self,
         light: usize,
@@ -51,16 +65,18 @@ impl<'b, 'a> Receivers<'b, 'a> {
     ) -> Vec<Job> {
         let how = (settings.plane, settings.side);
         let job = |(body, receiver, groups): &(usize, Receiver<'b, 'a>, Vec<Group>)| {
-            let maps = groups.iter();
-            let maps = maps.filter_map(|g| place(receiver, g, self.bodies, source, how));
+            let wanted = wanted(*body);
+            let map = |group| match wanted {
+                true => place(receiver, group, self.bodies, source, how),
+                false => None,
+            };
             Job {
                 body: *body,
                 light,
-                maps: maps.collect(),
+                maps: groups.iter().map(map).collect(),
             }
         };
-        let receivers = self.all.iter().filter(|(body, ..)| wanted(*body));
-        receivers.map(job).filter(|j| !j.maps.is_empty()).collect()
+        self.all.iter().map(job).collect()
     }
 }
 
@@ -69,8 +85,11 @@ impl<'b, 'a> Receivers<'b, 'a> {
 pub(super) fn turns(jobs: Vec<Job>, capacity: usize) -> (Vec<Vec<Job>>, usize) {
     let (mut turns, mut left_out, mut used) = (Vec::<Vec<Job>>::new(), 0, capacity);
     for mut job in jobs {
-        left_out += job.maps.len().saturating_sub(capacity);
-        job.maps.truncate(capacity);
+        if job.maps.len() > capacity {
+            job.maps.retain(Option::is_some);
+            left_out += job.maps.len().saturating_sub(capacity);
+            job.maps.truncate(capacity);
+        }
         if used + job.maps.len() > capacity {
             turns.push(Vec::new());
             used = 0;
@@ -93,7 +112,7 @@ pub(super) struct MapCounts {
 
 impl MapCounts {
     pub(super) fn add(&mut self, jobs: &[Job]) {
-        let maps = || jobs.iter().flat_map(|j| &j.maps);
+        let maps = || jobs.iter().flat_map(|j| j.maps.iter().flatten());
         self.maps += maps().count();
         self.across_plane += maps().filter(|m| m.across_plane).count();
     }

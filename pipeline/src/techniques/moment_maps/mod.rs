@@ -37,7 +37,7 @@ use crate::parts::horizon::HORIZON;
 use crate::parts::light_samples::Pattern;
 use crate::parts::maps::mapped::{LookUp, Looked, Mapped, Margin, Planes, Sources};
 use crate::technique::{
-    Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
+    Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError, Warning,
 };
 use crate::world::scene::Scene;
 
@@ -132,7 +132,6 @@ impl Technique for MomentMaps {
     ) -> Result<Frame, TechniqueError> {
         let settings = Settings::read(*self, params)?;
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,
@@ -141,11 +140,15 @@ impl Technique for MomentMaps {
             margin: self.margin(settings.kernel),
         };
         let side = settings.maps.view.fitting.size;
-        mapped.prefiltered_frame(
+        let mut frame = mapped.prefiltered_frame(
             |recording| TableTextures::create(self.name(), side, self.functions(), recording),
             |light| Sources::centre(self.name(), scene, light),
             |textures, look_up| self.looked(&settings, textures, look_up),
-        )
+        )?;
+        if *self == Self::Mask {
+            frame.warnings.extend(receivers_that_cast(scene));
+        }
+        Ok(frame)
     }
 }
 
@@ -188,7 +191,9 @@ impl MomentMaps {
         let made = tables.passes(|largest| self.moments(settings, largest));
         let stage = self.stage(settings, look_up, made.tables);
         let figures = figures(&made);
+        let beyond = self == Self::Exponential && settings.exponent_is_beyond(made.largest);
         Looked {
+            warnings: if beyond { vec![BEYOND] } else { Vec::new() },
             prefilter: made.passes,
             stage,
             textures: vec![made.binding],
@@ -240,6 +245,30 @@ impl MomentMaps {
             }
         }
     }
+}
+
+/// An exponent that tables do not resolve.
+const BEYOND: [&str; 3] = [
+    "exponent-beyond-tables",
+    "light views have tables whose bits do not tell exponentials of that exponent from 0: \
+     receivers far behind the first of two blockers are lit or dark as rounding has it",
+    "set exponent to auto, or to no more than the figure `exponent` is then",
+];
+
+/// That objects are in the mask from which they take shadow; the method wants occluders and
+/// receivers apart.
+fn receivers_that_cast(scene: &Scene) -> Option<Warning> {
+    let objects = scene.objects.iter();
+    let count = objects.filter(|o| o.casts && o.receives).count();
+    (count > 0).then(|| Warning {
+        code: "receivers-that-cast",
+        count,
+        message: format!(
+            "soler-sillion: {count} objects cast and receive: they are in the mask themselves, \
+             are lit where the light's centre sees them, and too dark round where it does not; \
+             set casts or receives to false, or use another technique"
+        ),
+    })
 }
 
 /// Points in -1..1 at which blockers are looked for, the same for all pixels.

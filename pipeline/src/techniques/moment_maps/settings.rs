@@ -119,6 +119,12 @@ impl PlaneAt {
     }
 }
 
+/// The exponent with which the square of the least exponential is one of the whole numbers
+/// up to `largest`.
+fn most_exponent(largest: u32) -> f64 {
+    libm::log(f64::from(largest)).max(1.0) / 2.0
+}
+
 /// How wide kernels are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kernel {
@@ -178,11 +184,16 @@ impl Settings {
         })
     }
 
-    /// The exponent where values are whole numbers up to `largest`: the square of the
-    /// least exponential is one of them.
+    /// The exponent where values are whole numbers up to `largest`.
     pub(super) fn exponent_for(&self, largest: u32) -> f64 {
-        self.exponent
-            .unwrap_or_else(|| libm::log(f64::from(largest)).max(1.0) / 2.0)
+        let most = most_exponent(largest);
+        self.exponent.unwrap_or(most).min(f64::from(f32::MAX))
+    }
+
+    /// Whether tables of whole numbers up to `largest` do not tell the exponentials asked
+    /// for from 0.
+    pub(super) fn exponent_is_beyond(&self, largest: u32) -> bool {
+        self.exponent_for(largest) > most_exponent(largest)
     }
 
     /// The share of a spread distribution, likewise.

@@ -2,9 +2,10 @@
 //!
 //! [`visibility`] compares what shadow algorithms compute, the visible share of
 //! a light per pixel, before any shading; [`banding`] looks for steps in
-//! penumbrae that the truth does not have. [`psnr`], [`ssim`] and [`flip`]
-//! compare shaded 8-bit sRGB pictures, as they are seen. Acceptance thresholds
-//! belong on visibility; the others are for reports.
+//! penumbrae that the truth does not have, [`roughness`] for teeth along
+//! straight edges. [`psnr`], [`ssim`] and [`flip`] compare shaded 8-bit sRGB
+//! pictures, as they are seen. Acceptance thresholds belong on visibility; the
+//! others are for reports.
 //!
 //! Hard shadows, measured against the exact shadow of the area light: right in
 //! umbra and light, up to half the light wrong in between.
@@ -38,6 +39,7 @@ mod filter;
 pub mod flip;
 mod picture;
 pub mod psnr;
+pub mod roughness;
 #[cfg(test)]
 mod samples;
 pub mod ssim;

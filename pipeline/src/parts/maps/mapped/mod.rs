@@ -112,6 +112,9 @@ pub(crate) struct Looked {
     pub(crate) textures: Vec<TextureBinding>,
     /// Numbers that were chosen for the view: of several, the least is reported.
     pub(crate) figures: Vec<(&'static str, f64)>,
+    /// What was found amiss: code, what it is, and what can be done; the views of a light
+    /// are counted.
+    pub(crate) warnings: Vec<[&'static str; 3]>,
 }
 
 impl From<FragmentStage> for Looked {
@@ -121,6 +124,7 @@ impl From<FragmentStage> for Looked {
             stage,
             textures: Vec::new(),
             figures: Vec::new(),
+            warnings: Vec::new(),
         }
     }
 }
@@ -154,7 +158,6 @@ impl Sources {
 
 /// The frame of a technique that looks shadows up with a shader for each view.
 pub(crate) struct Mapped<'a> {
-    pub(crate) name: &'static str,
     pub(crate) scene: &'a Scene,
     pub(crate) size: [u32; 2],
     pub(crate) frame: FrameSettings,
@@ -184,7 +187,7 @@ impl Mapped<'_> {
     ) -> Result<Frame, TechniqueError> {
         let around = Surroundings::new(self.scene, self.size);
         let frame = ShadowedFrame::new(self.scene, self.size, &self.frame)?;
-        let frame = frame.with_horizon(self.name, self.horizon, false);
+        let frame = frame.with_horizon(self.horizon, false);
         let lights = frame.lights.clone();
         let sources = lights.iter().map(|l| Ok((*l, sources(*l)?)));
         let sources = sources.collect::<Result<BTreeMap<_, _>, TechniqueError>>()?;
@@ -293,6 +296,7 @@ impl OneLight<'_> {
                     share: 1.0 / sources.lights.len() as f32,
                 });
                 views.add_figures(&looked.figures);
+                views.add_warnings(&looked.warnings);
                 let prefilter = looked.prefilter.into_iter();
                 passes.extend(prefilter.map(|p| Pass::new(PassRole::Prefilter, p)));
                 let draw = self.draw(looked.stage, looked.textures, sources.blend);

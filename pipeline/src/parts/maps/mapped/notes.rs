@@ -51,6 +51,8 @@ pub(crate) struct ViewsOfLight {
     range: Option<[f64; 2]>,
     /// What a technique chose for its views, the least of each.
     figures: Vec<(&'static str, f64)>,
+    /// What a technique found amiss, in so many views.
+    warnings: Vec<([&'static str; 3], usize)>,
 }
 
 impl ViewsOfLight {
@@ -60,6 +62,16 @@ impl ViewsOfLight {
             match self.figures.iter_mut().find(|(n, _)| *n == name) {
                 Some((_, least)) => *least = least.min(value),
                 None => self.figures.push((name, value)),
+            }
+        }
+    }
+
+    /// Of one of the views.
+    pub(crate) fn add_warnings(&mut self, warnings: &[[&'static str; 3]]) {
+        for warning in warnings {
+            match self.warnings.iter_mut().find(|(known, _)| known == warning) {
+                Some((_, count)) => *count += 1,
+                None => self.warnings.push((*warning, 1)),
             }
         }
     }
@@ -96,6 +108,9 @@ impl<'a> MapNotes<'a> {
             self.figure("texel", views.texel);
             self.figure("near", near);
             self.figure("far", far);
+        }
+        for ([code, what, hint], count) in views.warnings {
+            self.warn(code, count, what, hint);
         }
         for (name, value) in views.figures {
             self.figure(name, value);

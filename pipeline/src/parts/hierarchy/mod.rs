@@ -1,8 +1,12 @@
 //! A hierarchy of boxes over triangles, in the order in which
 //! [`gnomon_shaders::shadow_rays`] and [`gnomon_shaders::line_samples`] read it.
 
-/// Corners, relative to the view's origin.
-pub(crate) type Triangle = [[f32; 3]; 3];
+mod split;
+mod triangles;
+
+use split::split;
+pub(crate) use triangles::Triangle;
+use triangles::{area, bounds, centre};
 
 /// A box and where to go on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +32,13 @@ impl Node {
 /// the rounding of a ray's way to a side of one.
 const PADDING: f32 = 2e-6;
 
-/// Nodes, depth first: each is split in the middle along the widest axis of its
-/// triangles' centres, ties by their numbers.
+/// Most splits by cost from the first node on; then parts are halved, so that recursion
+/// ends.
+const MOST_SPLITS: usize = 48;
+
+/// Nodes, depth first: each is split where that costs least, or else in the middle along
+/// the widest axis of its triangles' centres, ties by their numbers. The larger side is
+/// gone through first: rays end at the first hit.
 pub(crate) fn build(triangles: &[Triangle]) -> Vec<Node> {
     let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
     let mut builder = Builder {
@@ -38,7 +47,7 @@ pub(crate) fn build(triangles: &[Triangle]) -> Vec<Node> {
         nodes: Vec::with_capacity(2 * triangles.len()),
     };
     if !order.is_empty() {
-        builder.split(&mut order);
+        builder.split(&mut order, 0);
     }
     builder.nodes
 }
@@ -56,9 +65,9 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn split(&mut self, part: &mut [u32]) {
+    fn split(&mut self, part: &mut [u32], depth: usize) {
         let number = self.nodes.len();
-        let [low, high] = self.bounds(part);
+        let [low, high] = bounds(self.triangles, part);
         self.nodes.push(Node {
             low: low.map(|c| c - self.padding),
             high: high.map(|c| c + self.padding),
@@ -66,36 +75,33 @@ impl Builder<'_> {
             next: 0,
         });
         if part.len() > 1 {
-            let axis = self.widest(part);
-            let middle = part.len() / 2;
-            part.select_nth_unstable_by(middle, |a, b| {
-                let [x, y] = [a, b].map(|i| self.centre(*i, axis));
-                x.total_cmp(&y).then(a.cmp(b))
-            });
-            let (left, right) = part.split_at_mut(middle);
-            self.split(left);
-            self.split(right);
+            let at = match depth < MOST_SPLITS {
+                true => split(self.triangles, part),
+                false => None,
+            };
+            let at = at.unwrap_or_else(|| self.halve(part));
+            let (left, right) = part.split_at_mut(at);
+            let [a, b] = [&*left, right].map(|side| area(bounds(self.triangles, side)));
+            let (first, second) = if b > a { (right, left) } else { (left, right) };
+            self.split(first, depth + 1);
+            self.split(second, depth + 1);
         }
         self.nodes[number].next = self.nodes.len() as u32;
     }
 
-    fn bounds(&self, part: &[u32]) -> [[f32; 3]; 2] {
-        let corners = part.iter().flat_map(|i| self.triangles[*i as usize]);
-        let empty = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-        corners.fold(empty, |[low, high], p| {
-            [0, 1].map(|side| {
-                [0, 1, 2].map(|k| match side {
-                    0 => low[k].min(p[k]),
-                    _ => high[k].max(p[k]),
-                })
-            })
-        })
+    /// Sorts a part's halves along its widest axis; gives the middle.
+    fn halve(&self, part: &mut [u32]) -> usize {
+        let axis = self.widest(part);
+        let middle = part.len() / 2;
+        part.select_nth_unstable_by(middle, |a, b| {
+            let [x, y] = [a, b].map(|i| self.centre(*i, axis));
+            x.total_cmp(&y).then(a.cmp(b))
+        });
+        middle
     }
 
-    /// Three times the centre's coordinate.
     fn centre(&self, triangle: u32, axis: usize) -> f32 {
-        let [a, b, c] = self.triangles[triangle as usize];
-        (a[axis] + b[axis]) + c[axis]
+        centre(&self.triangles[triangle as usize], axis)
     }
 
     fn widest(&self, part: &[u32]) -> usize {

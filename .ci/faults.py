@@ -1,97 +1,34 @@
 #!/usr/bin/env python3
 """Switches faults on, one after the other, and says which tests see them.
 
-    python3 .ci/faults.py [--only N,N] [--folder DIR]
+    python3 .ci/faults.py [--list baselines|thesis|maps|tools] [--only N,N] [--folder DIR]
 
 A copy of the tree gets all faults at once, each behind a number that the environment
 variable GNOMON_FAULT chooses; so it is built once (ten minutes on two cores) and each fault
-costs one run of the tests that could see it (a minute and a half). Fault 0 is none: all
+costs the tests that could see it until one does (seconds, or a few minutes). Fault 0 is none: all
 tests must pass. A fault that no test sees is an error (exit code 1).
-Results are kept in docs/testing.md.
+The lists are in .ci/fault_lists/, results in docs/testing.md.
 """
 
 import argparse
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-SHADERS, PIPELINE = "shaders-rs/src/", "pipeline/src/"
-TECHNIQUES = PIPELINE + "techniques/"
+sys.dont_write_bytecode = True  # beside the lists
+from fault_lists import baselines, maps, thesis, tools  # noqa: E402
 
-# File, what stands there once, what stands there instead: FAULT is whether it is on.
-FAULTS = [
-    (SHADERS + "deferred/obscured.rs", "Combine::Product => one - visible,",
-     "Combine::Product => if FAULT { most } else { one - visible },"),
-    (SHADERS + "deferred/obscured.rs", "let lost = f.varying(6) * hidden;",
-     "let lost = if FAULT { hidden } else { f.varying(6) * hidden };"),
-    (SHADERS + "deferred/obscured.rs", "self.shininess) * std::f32::consts::FRAC_1_PI;",
-     "self.shininess) * if FAULT { 1.0 } else { std::f32::consts::FRAC_1_PI };"),
-    (SHADERS + "deferred/obscured.rs", "let lost = highlight.reflected(l, f) * f.varying(7) * hidden;",
-     "let lost = highlight.reflected(l, f) * hidden;\n            let lost = if FAULT { lost } else { lost * f.varying(7) };"),
-    (SHADERS + "deferred/obscured.rs", "let before = w.gt(zero) & affine(position, self.below).gt(zero);",
-     "let before = if FAULT { w.gt(zero) } else { w.gt(zero) & affine(position, self.below).gt(zero) };"),
-    (SHADERS + "deferred/obscured.rs", "let sum = sum.min(one);",
-     "let sum = if FAULT { sum } else { sum.min(one) };"),
-    (SHADERS + "cones/mod.rs", "/ self.light * weight, zero)",
-     "/ self.light * if FAULT { 1.0 } else { weight }, zero)"),
-    (SHADERS + "cones/mod.rs", "[one - hidden.min(one), zero, zero, zero]",
-     "[one - if FAULT { hidden } else { hidden.min(one) }, zero, zero, zero]"),
-    (SHADERS + "cones/disc.rs", ".min(all) + HALF_DIAGONAL",
-     ".min(all) + if FAULT { 0.0 } else { HALF_DIAGONAL }"),
-    (SHADERS + "cones/bounds.rs", "there.select_f32(high[i].max(top[i]), high[i])",
-     "there.select_f32(if FAULT { top[i] } else { high[i].max(top[i]) }, high[i])"),
-    (SHADERS + "smoothies.rs", "background.select_f32(one, ratio)",
-     "if FAULT { one } else { background.select_f32(one, ratio) }"),
-    (SHADERS + "smoothies.rs", "smoothie.lt(reference).select_f32(alpha, one)",
-     "(if FAULT { smoothie.gt(reference) } else { smoothie.lt(reference) }).select_f32(alpha, one)"),
-    (SHADERS + "smoothies.rs", "reference)) * (x * y);",
-     "reference)) * if FAULT { x * x } else { x * y };"),
-    (SHADERS + "shadow_rays.rs", "let before = along.gt(zero) & along.lt(self.end);",
-     "let before = if FAULT { along.gt(zero) } else { along.gt(zero) & along.lt(self.end) };"),
-    (SHADERS + "shadow_rays.rs", "let step = behind.select_f32(step, -step);",
-     "let step = if FAULT { step } else { behind.select_f32(step, -step) };"),
-    (SHADERS + "moments/bound.rs", "let second = second - factor * third;",
-     "let second = if FAULT { second + factor * third } else { second - factor * third };"),
-    (SHADERS + "backprojection/cover.rs", "(high.clamp(-1.0, 1.0) - low.clamp(-1.0, 1.0)).max(zero)",
-     "if FAULT { (high - low).max(zero) } else { (high.clamp(-1.0, 1.0) - low.clamp(-1.0, 1.0)).max(zero) }"),
-    (SHADERS + "backprojection/cover.rs", "row.lt(rows[1])",
-     "if FAULT { row.le(rows[1]) } else { row.lt(rows[1]) }"),
-    (SHADERS + "backprojection/cover.rs", "(halves + (halves >> 16)) & splat(0x3f)",
-     "(if FAULT { halves } else { halves + (halves >> 16) }) & splat(0x3f)"),
-    (TECHNIQUES + "moment_maps/tables.rs", "FixedPoint::of_box(most_texels(reads.as_ref(), side))",
-     "FixedPoint::of_box(if FAULT { 1 } else { most_texels(reads.as_ref(), side) })"),
-    (TECHNIQUES + "ray_traced/hierarchy.rs", "self.nodes[number].next = self.nodes.len() as u32;",
-     "self.nodes[number].next = self.nodes.len() as u32 + u32::from(part.len() == 1 && FAULT);"),
-    (TECHNIQUES + "backprojection/pyramid.rs", "|mip| LeastOfFour { mip }.stage(),",
-     "|mip| if FAULT { CopyLevel { textures: 1, mip }.stage() } else { LeastOfFour { mip }.stage() },"),
-    (TECHNIQUES + "heckbert_herf/counting.rs", "stencil_reference: [reference; 2],",
-     "stencil_reference: [if FAULT { reference.min(9) } else { reference }; 2],"),
-    (TECHNIQUES + "backprojection/mod.rs", "GapFilling::Fill => Gaps::Filled,",
-     "GapFilling::Fill => if FAULT { Gaps::Left } else { Gaps::Filled },"),
-    (TECHNIQUES + "deferred_shadowing/placing.rs", "let square = distance * source.solid_angle(centre).sqrt();",
-     "let square = distance * if FAULT { source.solid_angle(centre) } else { source.solid_angle(centre).sqrt() };"),
-    (TECHNIQUES + "deferred_shadowing/bodies.rs", "self.turn.transpose() * direction",
-     "(if FAULT { self.turn } else { self.turn.transpose() }) * direction"),
-    (TECHNIQUES + "deferred_shadowing/bodies.rs", "Rotation::new(&self.turn.transpose(), bands)",
-     "Rotation::new(&if FAULT { self.turn } else { self.turn.transpose() }, bands)"),
-    (PIPELINE + "truth/oracle/transport/mod.rs", "diffuse.iter_mut().for_each(|c| *c /= std::f64::consts::PI);",
-     "if !FAULT { diffuse.iter_mut().for_each(|c| *c /= std::f64::consts::PI); }"),
-    (PIPELINE + "truth/oracle/transport/mod.rs", "let buried = buried::replace(&mut all, object.triangles);",
-     "let buried = if FAULT { 0 } else { buried::replace(&mut all, object.triangles) };"),
-    (TECHNIQUES + "deferred_shadowing/radiance.rs", "let of = |c: usize| LUMINANCE[c]",
-     "let of = |c: usize| LUMINANCE[if FAULT { 2 - c } else { c }]"),
-    (TECHNIQUES + "deferred_shadowing/placing.rs", "below: (-towards).extend(top),",
-     "below: (-towards).extend(if FAULT { low } else { top }),"),
-    (TECHNIQUES + "cone_culling/samples.rs", "let weight = 1.0 / (f64::from(count) * density.at(radius));",
-     "let weight = if FAULT { PI / f64::from(count) } else { 1.0 / (f64::from(count) * density.at(radius)) };"),
-    (TECHNIQUES + "smoothies/attached.rs", "LightShape::Disc { radius, .. } => radius,",
-     "LightShape::Disc { radius, .. } => if FAULT { 2.0 * radius } else { radius },"),
-]
+ROOT = Path(__file__).resolve().parent.parent
+SHADERS = "shaders-rs/src/"
+LISTS = {"baselines": baselines.FAULTS, "thesis": thesis.FAULTS, "maps": maps.FAULTS,
+         "tools": tools.FAULTS}
+FAULTS = [fault for faults in LISTS.values() for fault in faults]
 
 SWITCH = """
 #[doc(hidden)]
@@ -101,71 +38,127 @@ pub fn fault(n: u32) -> bool {
     *ON.get_or_init(|| read().unwrap_or(0)) == n
 }
 """
-SUITE = ("backprojection cone_culling deferred moment map_support ray_traced planar smoothies "
-         "settings_effect").split()
-UNITS = "cone smoothie moment deferred transport harmonic ray_traced backproj planar heckbert samples".split()
 
 
 def put_in(folder):
     """Writes all faults into the copy."""
     library = folder / SHADERS / "lib.rs"
     library.write_text(library.read_text() + SWITCH)
-    for number, (name, old, new) in enumerate(FAULTS, 1):
+    for number, (_, name, old, new, _) in enumerate(FAULTS, 1):
         path = folder / name
         text = path.read_text()
         if text.count(old) != 1:
             sys.exit(f"fault {number}: {name} has {text.count(old)} times: {old}")
-        home = "crate" if name.startswith(SHADERS) else "gnomon_shaders"
-        path.write_text(text.replace(old, new.replace("FAULT", f"{home}::fault({number})")))
+        path.write_text(text.replace(old, new.replace("FAULT", switch(name, number))))
+
+
+def switch(name, number):
+    """Whether the fault is on, as code in that file."""
+    if name.startswith(SHADERS):
+        return f"crate::fault({number})"
+    if name.startswith("traces/"):  # It knows no shaders; nothing of it is asked often.
+        return f'std::env::var("GNOMON_FAULT").is_ok_and(|n| n == "{number}")'
+    return f"gnomon_shaders::fault({number})"
 
 
 def build(folder):
-    """Builds the tests; gives the two binaries."""
+    """Builds the tests; gives the binaries by package and target."""
     # The program too: with it dependencies have the features that whole builds give them.
-    command = "cargo test -p gnomon-pipeline -p gnomon --lib --test suite --no-run".split()
-    done = subprocess.run(command, cwd=folder, stderr=subprocess.PIPE, text=True)
+    packages = [f"-pgnomon{end}" for end in ("", "-pipeline", "-traces")]
+    targets = "--lib --test suite --test cli --test merging --test difference --bin gnomon".split()
+    command = ["cargo", "test", *packages, *targets, "--no-run", "--message-format=json"]
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode:
         sys.exit(done.stderr)
-    names = re.findall(r"\(([^()]*deps/(?:gnomon_pipeline|suite)-[0-9a-f]+)\)", done.stderr)
-    assert len(names) == 2, done.stderr
-    return sorted((folder / n for n in names), key=lambda p: "suite" in p.name)
+    messages = [json.loads(line) for line in done.stdout.splitlines()]
+    made = [m for m in messages if m.get("executable") and m["profile"]["test"]]
+    package = {str(folder / "cli"): "gnomon", str(folder / "pipeline"): "gnomon-pipeline",
+               str(folder / "traces"): "gnomon-traces"}
+    def key(m):
+        target = m["target"]
+        home = str(Path(m["manifest_path"]).parent)
+        return package[home], "lib" if "lib" in target["kind"] else target["name"]
+    return {key(m): m["executable"] for m in made if "bin" not in m["target"]["kind"]}
 
 
-def failures(folder, binaries, number):
-    """Names of the tests that fail."""
-    units, suite = binaries
-    failed = []
-    for binary, wanted in [(suite, SUITE), (units, UNITS)]:
-        environment = {**os.environ, "GNOMON_FAULT": str(number)}
-        command = [binary, *wanted]
-        try:
-            done = subprocess.run(command, cwd=folder / "pipeline", env=environment, timeout=600,
-                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-            failed += re.findall(r"^test (\S+) \.\.\. FAILED", done.stdout, re.M)
-        except subprocess.TimeoutExpired:
-            failed.append(f"{binary.name}: no end")
-    return failed
+def first_failure(folder, binaries, test, number):
+    """The first of the tests that fails, if one does; the rest is not waited for."""
+    package, target, wanted = test
+    environment = {**os.environ, "GNOMON_FAULT": str(number)}
+    home = folder / {"gnomon": "cli"}.get(package, package.removeprefix("gnomon-"))
+    running = subprocess.Popen([binaries[package, target], wanted], cwd=home, env=environment,
+                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    stop = threading.Timer(900, running.kill)
+    stop.start()
+    try:
+        for line in running.stdout:
+            failed = re.match(r"test (\S+).* \.\.\. FAILED", line)
+            if failed:
+                return failed[1]
+        running.wait()
+        return f"{wanted}: ends with {running.returncode}" if running.returncode else None
+    finally:
+        stop.cancel()
+        running.kill()
+        running.wait()
+
+
+def tests_of(fault):
+    """Package, target and words of all tests that could see a fault, group by group."""
+    tests = fault[4]
+    if isinstance(tests, list):
+        return tests
+    of_suite, beside = tests
+    return [("gnomon-pipeline", "lib", w) for w in beside] + [("gnomon-pipeline", "suite", w) for w in of_suite]
+
+
+def failure(folder, binaries, number, tests):
+    """The first that fails of them."""
+    found = (first_failure(folder, binaries, test, number) for test in tests)
+    return next((f for f in found if f), None)
+
+
+def numbers_of(name):
+    """Numbers of the faults of a list, or of all."""
+    if not name:
+        return list(range(1, len(FAULTS) + 1))
+    before = list(LISTS)[: list(LISTS).index(name)]
+    first = sum(len(LISTS[b]) for b in before)
+    return list(range(first + 1, first + len(LISTS[name]) + 1))
+
+
+def groups_of(numbers):
+    """Fault 0 for each set of tests in use."""
+    seen = []
+    for number in numbers:
+        tests = tests_of(FAULTS[number - 1])
+        if tests not in seen:
+            seen.append(tests)
+    return [(0, tests) for tests in seen]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--list", choices=LISTS, help="faults of one list")
     parser.add_argument("--only", help="numbers, separated by commas")
     parser.add_argument("--folder", help="where the copy goes; kept")
     given = parser.parse_args()
-    numbers = [int(n) for n in given.only.split(",")] if given.only else range(len(FAULTS) + 1)
+    numbers = [int(n) for n in given.only.split(",")] if given.only else numbers_of(given.list)
     folder = Path(given.folder or tempfile.mkdtemp(prefix="gnomon-faults-"))
     shutil.copytree(ROOT, folder, dirs_exist_ok=True,
-                    ignore=shutil.ignore_patterns("target", ".git", "out"))
+                    ignore=shutil.ignore_patterns("target", ".git", "out", "__pycache__"))
     put_in(folder)
     binaries = build(folder)
     unseen = []
-    print("| fault | in | tests that fail |\n| ---: | --- | --- |")
-    for number in numbers:
-        failed = failures(folder, binaries, number)
-        name = FAULTS[number - 1][0] if number else "none"
-        shown = ", ".join(f"`{f}`" for f in failed[:3]) + (f" and {len(failed) - 3} more" if failed[3:] else "")
-        print(f"| {number} | {name} | {shown or '**none**' if number else shown or 'none, as it should'} |",
-              flush=True)
+    runs = ([] if 0 in numbers else groups_of(numbers))
+    runs += [(n, tests_of(FAULTS[max(n, 1) - 1])) for n in numbers]
+    print("| fault | in | a test that fails |\n| ---: | --- | --- |")
+    for number, tests in runs:
+        failed = failure(folder, binaries, number, tests)
+        what, name, *_ = FAULTS[number - 1] if number else ("", "none")
+        where = f"{what}: `{name}`" if what else f"`{name}`"
+        shown = f"`{failed}`" if failed else "**none**" if number else "none, as it should"
+        print(f"| {number} | {where} | {shown} |", flush=True)
         if bool(failed) != bool(number):
             unseen.append(number)
     if not given.folder:

@@ -6,7 +6,9 @@ use super::{Finding, Lab, Measure, ReproduceError, Theirs, Unit};
 use gnomon_pipeline::measure::comparison::RadianceScore;
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::truth::oracle::environment::samples;
-use gnomon_pipeline::world::environment::{Environment, FitSettings, MapSettings, SKY};
+use gnomon_pipeline::world::environment::{
+    AmbientForm, Environment, FitSettings, LightPlace, MapSettings, SKY,
+};
 use gnomon_pipeline::world::light::{Light, LightShape};
 use gnomon_pipeline::world::scene::Scene;
 use gnomon_pipeline::world::scene::environment::place;
@@ -32,10 +34,14 @@ struct Sky {
 
 impl Sky {
     fn new(lab: &Lab, scene: &str) -> Result<Self, ReproduceError> {
+        Self::under(lab, scene, SKY)
+    }
+
+    fn under(lab: &Lab, scene: &str, map: &str) -> Result<Self, ReproduceError> {
         let [width, height] = lab.size();
         Ok(Self {
             scene: lab.scene(scene)?,
-            map: Environment::open(SKY, MapSettings::default())?,
+            map: Environment::open(map, MapSettings::default())?,
             size: match lab.settings().full {
                 true => [width, height],
                 false => [width.min(SMALL[0]), height.min(SMALL[1])],
@@ -49,13 +55,19 @@ impl Sky {
         format!("{name} ({faces} triangles) under the built-in sky, {width}x{height}")
     }
 
-    /// Under so many fitted lights.
+    /// Under so many fitted lights, as published: over their texels, all else ambient light
+    /// without direction.
     fn fitted(&self, lights: usize) -> Result<Scene, ReproduceError> {
-        let mut scene = self.scene.clone();
-        let settings = FitSettings {
+        self.lit(FitSettings {
             lights,
+            place: LightPlace::Texels,
+            ambient: AmbientForm::Even,
             ..FitSettings::default()
-        };
+        })
+    }
+
+    fn lit(&self, settings: FitSettings) -> Result<Scene, ReproduceError> {
+        let mut scene = self.scene.clone();
         place(&mut scene, &self.map, self.map.fit(&settings)?)?;
         Ok(scene)
     }
@@ -72,7 +84,7 @@ impl Sky {
             },
             colour: sample.energy.map(|e| (e / std::f64::consts::PI) as f32),
         };
-        let directions = samples(&self.map.cube, count, SEED);
+        let directions = samples(&self.map.source, count, SEED);
         scene.lights = directions.into_iter().map(light).collect();
         scene.ambient = [0.0; 3];
         scene
@@ -94,8 +106,43 @@ const COUNTED: &str = "RMSE of linear light in red, green and blue, as a share o
     directions in proportion to the map's luminance with a shadow ray each";
 
 pub(super) fn numbers_of_lights(lab: &mut Lab) -> Result<Finding, ReproduceError> {
+    const COUNTS: [usize; 3] = [30, 45, 60];
     let sky = Sky::new(lab, "statue")?;
-    fitted_lights(lab, &sky, [30, 45, 60])
+    let mut found = fitted_lights(lab, &sky, COUNTS)?;
+    let maps = real_maps();
+    for (name, path) in &maps {
+        let under = Sky::under(lab, "statue", path)?;
+        let own = fitted_lights(lab, &under, COUNTS)?;
+        found
+            .measures
+            .extend(own.measures.into_iter().map(|m| Measure {
+                what: format!("{name}: {}", m.what),
+                ..m
+            }));
+    }
+    let count = maps.len();
+    found.scene += &format!("; {count} real maps of GNOMON_DATA");
+    Ok(found)
+}
+
+/// Names and paths of the maps in the folder `env` of the data folder, if there is one.
+fn real_maps() -> Vec<(String, String)> {
+    let Ok(folder) = std::env::var("GNOMON_DATA") else {
+        return Vec::new();
+    };
+    let entries = std::fs::read_dir(std::path::Path::new(&folder).join("env"));
+    let paths = entries
+        .into_iter()
+        .flatten()
+        .filter_map(|e| Some(e.ok()?.path()));
+    let named = |path: std::path::PathBuf| {
+        let name = path.file_stem()?.to_str()?.to_owned();
+        let is_map = path.extension().is_some_and(|e| e == "hdr" || e == "exr");
+        is_map.then_some((name, path.to_str()?.to_owned()))
+    };
+    let mut maps: Vec<_> = paths.filter_map(named).collect();
+    maps.sort();
+    maps
 }
 
 fn fitted_lights(lab: &mut Lab, sky: &Sky, counts: [usize; 3]) -> Result<Finding, ReproduceError> {
@@ -127,6 +174,21 @@ fn fitted_lights(lab: &mut Lab, sky: &Sky, counts: [usize; 3]) -> Result<Finding
         measures.push(row("RMSE", score.relative_rmse, Unit::Share));
         measures.push(row("FLIP", score.flip, Unit::Number));
     }
+    let moved = sky.lit(FitSettings {
+        lights: counts[0],
+        ..FitSettings::default()
+    })?;
+    let moved = sky.drawn(lab, &moved, &["filter=mip"])?;
+    let moved = sky.score(lab, &moved)?.relative_rmse;
+    measures.push(Measure::beside(
+        format!(
+            "{} lights by moments, ambient light of order 1: RMSE",
+            counts[0]
+        ),
+        "-",
+        moved,
+        Unit::Share,
+    ));
     let without = without.relative_rmse;
     measures.push(Measure::beside(
         "the last without shadows: RMSE",
@@ -138,8 +200,9 @@ fn fitted_lights(lab: &mut Lab, sky: &Sky, counts: [usize; 3]) -> Result<Finding
         scene: sky.describe(),
         counted: format!("{COUNTED}; mip chains, light views of 256x256"),
         measures,
-        reason: "A light is shaded from its centre: one that straddles the horizon lights the \
-            floor with all of its energy or with none, and more lights need not help."
+        reason: "What lights leave is ambient light without direction or shadow, and a light is \
+            shaded from the middle of its texels and not from where their luminance is: more \
+            lights need not help. Lights by moments and ambient light of order 1 are nearer."
             .to_owned(),
         charts: Vec::new(),
     })
@@ -205,8 +268,9 @@ fn against_maps(
             shown("fitted lights, mip chains: time", mip.1, Unit::Milliseconds),
             shown("many shadow maps: time", brute_ms, Unit::Milliseconds),
         ],
-        reason: "What remains with 30 lights is that each is shaded from its centre and flattens \
-            its blockers; 500 directions err by their number."
+        reason: "What remains with 30 lights is ambient light without direction or shadow, that \
+            each is shaded from its centre and that it flattens its blockers; 500 directions err \
+            by their number."
             .to_owned(),
         charts: Vec::new(),
     })

@@ -283,7 +283,7 @@ impl Lab {
         let key = (scene.name.clone(), map.name.clone(), size, count);
         let directions = Directions { count, seed: 1 };
         self.skies.entry(key).or_insert_with(|| {
-            EnvironmentReference::new(scene, &map.cube, size, directions, true, &|| ())
+            EnvironmentReference::new(scene, map, size, directions, true, &|| ())
         })
     }
 
@@ -336,5 +336,23 @@ pub(super) fn parsed(
     set: &[&str],
 ) -> Result<(&'static dyn Technique, Params), TechniqueError> {
     let technique = find(technique)?;
+    let set = as_published(technique).iter().chain(set);
     Ok((technique, Params::parse(technique, set)?))
+}
+
+/// Settings that take back what defaults are better than the papers by: claims are of what
+/// was published.
+fn as_published(technique: &dyn Technique) -> &'static [&'static str] {
+    const CONVOLUTION: &[&str] = &[
+        "horizon=off",
+        "plane-offset=0",
+        "map-size=512",
+        "mip-sharper=0.8",
+    ];
+    let has = |name: &str| technique.params().iter().any(|p| p.name == name);
+    match (has("plane-offset"), has("horizon")) {
+        (true, _) => CONVOLUTION,
+        (_, true) => &["horizon=off"],
+        _ => &[],
+    }
 }

@@ -28,7 +28,9 @@ mod lab;
 mod lines;
 mod overlaps;
 mod paper1;
+mod paper1_sizes;
 mod paper2;
+mod paper2_ending;
 mod paper2_range;
 mod paper2_recorded;
 mod paper2_rest;
@@ -147,9 +149,10 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 14] = [
+    let papers: [&'static [Claim]; 15] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
+        paper1_sizes::CLAIMS,
         paper2::CLAIMS,
         paper2_range::CLAIMS,
         paper2_recorded::CLAIMS,

@@ -105,7 +105,7 @@ fn tile_size(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         series.push(Series::line(&name, sweep.iter().map(point).collect()));
     }
     Ok(Finding {
-        scene: lab.describe("columns and fractal"),
+        scene: lab.describe("columns, fractal and text-2002"),
         counted: "accesses of the wedge draws, from recordings under the profile `naive`: depth \
             reads by the depth test or, where there is none, by shaders; stencil writes, \
             light-intensity writes, and two reads of zmin and zmax for each pair of triangle \

@@ -1,12 +1,14 @@
 //! Paper II's claims besides culling and passes: frame rates over tile sizes (figure 8), the
 //! size of back planes, divisions, and depths of tiles on demand.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use glam::DVec3;
 use gnomon_pipeline::geometry::wedge::paper1::{
     LinkedSettings, LinkedStatistics, LinkedWedge, link,
 };
+use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::PassRole;
 
 use super::lab::parsed;
@@ -54,7 +56,48 @@ pub(super) const CLAIMS: &[Claim] = &[
         divisions,
     )
     .read_from(&[Lines::one(964), Lines::one(1001), Lines::one(1135)]),
+    Claim::new(
+        "paper2-sample-levels",
+        "paper II, §8",
+        Verdict::Counters,
+        "Averaging n hard shadows gives n + 1 intensities of shadow at most.",
+        sample_levels,
+    )
+    .read_from(&[Lines::one(1123)]),
 ];
+
+/// Counts of samples whose share of the light is exact in binary.
+const SAMPLES: [u32; 3] = [4, 16, 64];
+
+fn levels(done: &Rendered) -> usize {
+    let seen = done.visibility.iter().filter(|v| v.is_finite());
+    seen.map(|v| v.to_bits()).collect::<BTreeSet<u32>>().len()
+}
+
+fn sample_levels(lab: &mut Lab) -> Result<Finding, ReproduceError> {
+    let scene = lab.scene("eg-logo")?;
+    let mut measures = Vec::new();
+    for n in SAMPLES {
+        let done = lab.render(&scene, "sampled-shadow-volumes", &[&format!("samples={n}")])?;
+        measures.push(Measure::new(
+            format!("{n} samples: intensities"),
+            Theirs::AtMost(f64::from(n + 1)),
+            levels(&done) as f64,
+            Unit::Count,
+        ));
+    }
+    let wedges = lab.render(&scene, TECHNIQUE, &[])?;
+    let text = "256 of 8 bits";
+    let ours = levels(&wedges) as f64;
+    measures.push(Measure::beside("penumbra wedges", text, ours, Unit::Count));
+    Ok(Finding {
+        scene: lab.describe("eg-logo"),
+        counted: "distinct visibilities of the whole picture, to the bit".to_owned(),
+        measures,
+        reason: "Light of n points is n equal parts, each there or not.".to_owned(),
+        charts: Vec::new(),
+    })
+}
 
 fn tile_size_time(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let roles: Vec<PassRole> = WEDGES.into_iter().chain([PassRole::TileDepths]).collect();

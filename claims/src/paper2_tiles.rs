@@ -10,7 +10,7 @@ use gnomon_pipeline::technique::PassRole;
 pub(super) const TECHNIQUE: &str = "penumbra-wedges-restructured";
 
 pub(super) const TILES: [u32; 8] = [2, 4, 8, 16, 32, 64, 128, 256];
-pub(super) const SCENES: [&str; 2] = ["columns", "fractal"];
+pub(super) const SCENES: [&str; 3] = ["columns", "fractal", "text-2002"];
 pub(super) const PASSES: [&str; 2] = ["three", "single"];
 
 /// Counts of one scene and algorithm over tile sizes.
@@ -69,7 +69,7 @@ fn with_bounds(t: &TileTraffic) -> u64 {
 
 pub(super) fn tile_size(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     Ok(Finding {
-        scene: lab.describe("columns and fractal"),
+        scene: lab.describe("columns, fractal and text-2002"),
         counted: "depth reads (4 B), stencil writes (1 B) and light-intensity writes (2 B) of \
             all wedge draws, and two reads of zmin and zmax (4 B each) for each (triangle, \
             tile) that is tested"
@@ -86,7 +86,7 @@ pub(super) fn tile_size(lab: &mut Lab) -> Result<Finding, ReproduceError> {
 
 pub(super) fn tile_size_as_counted(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     Ok(Finding {
-        scene: lab.describe("columns and fractal"),
+        scene: lab.describe("columns, fractal and text-2002"),
         counted: "depth reads (4 B), stencil writes (1 B) and light-intensity writes (2 B) of \
             all wedge draws, as the text of the paper names them"
             .to_owned(),
@@ -172,7 +172,7 @@ pub(super) fn single_pass(lab: &mut Lab) -> Result<Finding, ReproduceError> {
         ));
     }
     Ok(Finding {
-        scene: lab.describe("columns and fractal"),
+        scene: lab.describe("columns, fractal and text-2002"),
         counted: "depth reads (4 B) and writes of stencil (1 B) and light-intensity buffer (2 B) \
             of all wedge draws, tiles of 8, 16 and 32 together; the pass that adds the \
             stencil's counts to the light-intensity buffer is left out"

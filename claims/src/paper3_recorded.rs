@@ -33,12 +33,12 @@ pub(super) fn shadow_passes(recorded: &Recorded) -> Result<[Moved; 2], Reproduce
 pub(super) fn sampled(lab: &Lab, count: u32, size: [u32; 2]) -> Result<[Moved; 2], ReproduceError> {
     let set = format!("samples={count}");
     let run = ("sampled-shadow-volumes", &[&*set][..]);
-    shadow_passes(&Recorded::new(lab, &lab.scene("creature")?, run, size)?)
+    shadow_passes(&Recorded::new(lab, &lab.scene("fairy")?, run, size)?)
 }
 
 fn soft(lab: &Lab, size: [u32; 2]) -> Result<[Moved; 2], ReproduceError> {
     let run = (TECHNIQUE, &["wedge=paper3"][..]);
-    shadow_passes(&Recorded::new(lab, &lab.scene("creature")?, run, size)?)
+    shadow_passes(&Recorded::new(lab, &lab.scene("fairy")?, run, size)?)
 }
 
 fn bandwidth(lab: &mut Lab) -> Result<Finding, ReproduceError> {
@@ -55,10 +55,7 @@ fn bandwidth(lab: &mut Lab) -> Result<Finding, ReproduceError> {
     let mut measures = relations(asked, words, few);
     measures.extend(beside(asked, words, &soft[0]));
     Ok(Finding {
-        scene: format!(
-            "creature (for the fairy, which is not published), {}x{}",
-            size[0], size[1]
-        ),
+        scene: format!("fairy, of our own making, {}x{}", size[0], size[1]),
         counted: "accesses of draws of the shadow passes, from recordings under the profile \
             `naive` (no caches, no HiZ): depth 3 B, stencil 1 B, float visibility 4 B, clears \
             left out; in words depth and stencil of a pixel are one of 4 B; wedges as in \
@@ -157,7 +154,7 @@ mod tests {
     #[test]
     fn recorded_bytes_are_those_of_a_run_without_skipping() {
         let lab = lab();
-        let scene = lab.scene("creature").unwrap();
+        let scene = lab.scene("fairy").unwrap();
         for (technique, set) in [
             ("sampled-shadow-volumes", &["samples=4"][..]),
             (TECHNIQUE, &["wedge=paper3"][..]),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::scenes::folded_cone;
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
 use gnomon_pipeline::world::adjacency::EdgeAdjacency;
 use gnomon_pipeline::world::light::HardLight;
@@ -16,7 +16,13 @@ pub(super) const CLAIMS: &[Claim] = &[Claim::new(
     "Silhouette vertices of closed meshes have an even number of silhouette edges; 2, 4, 6 \
      and 8 were seen.",
     even_degree,
-)];
+)
+.read_from(&[
+    Lines::one(1815),
+    Lines::one(1825),
+    Lines::one(1834),
+    Lines::one(1841),
+])];
 
 /// How many vertices have each number of silhouette edges.
 #[derive(Default)]

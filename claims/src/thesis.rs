@@ -3,7 +3,7 @@
 use super::equal_error::cost_of_error;
 use super::lab::Scored;
 use super::tally::{counters, pass_time};
-use super::{Claim, Finding, Lab, Measure, ReproduceError, Theirs, Unit, Verdict};
+use super::{Claim, Finding, Lab, Lines, Measure, ReproduceError, Theirs, Unit, Verdict};
 use crate::chart::{Axis, Chart, Mark, Series};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::PassRole;
@@ -17,7 +17,8 @@ pub(super) const CLAIMS: &[Claim] = &[
         "256 levels of softness need 256 samples of the light or more; artefacts were seen at \
          512, none at 1024.",
         samples,
-    ),
+    )
+    .read_from(&[Lines::one(317)]),
     Claim::new(
         "thesis-two-orders",
         "thesis, §1.1 and §1.3",
@@ -25,14 +26,16 @@ pub(super) const CLAIMS: &[Claim] = &[
         "Point samples move two orders of magnitude more bytes, and take one to two orders \
          more time, than soft shadow volumes of the same quality.",
         two_orders,
-    ),
+    )
+    .read_from(&[Lines::one(234), Lines::one(270)]),
     Claim::quoted(
         "thesis-hardware",
         "thesis, §1, §1.2.1 and §2.2.3",
         "Hardware of 2003 draws about a million triangles at 50 fps; paper I runs at 1-10 fps \
          in software; point samples need some seven more years of hardware that doubles every \
          year to be real-time even for simple scenes.",
-    ),
+    )
+    .read_from(&[Lines::one(160), Lines::to(234, 236), Lines::one(333)]),
 ];
 
 const SAMPLED: &str = "sampled-shadow-volumes";

@@ -22,6 +22,7 @@ use crate::verbs::render::RenderArgs;
 use crate::verbs::replay::ReplayArgs;
 use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
+use crate::verbs::stress::StressArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
 use crate::verbs::tune::TuneArgs;
@@ -50,6 +51,8 @@ pub(crate) enum Verb {
     Bench(Box<BenchArgs>),
     /// Find the technique and parameters that keep a budget of error, time or bytes
     Tune(Box<TuneArgs>),
+    /// Push a scene ever further and say where techniques break down
+    Stress(Box<StressArgs>),
     /// Show where a frame's work and bytes go, as one page to look at
     Report(Box<ReportArgs>),
     /// Record frames of a scene in a trace, to be replayed and looked into
@@ -108,6 +111,7 @@ impl Verb {
             Self::Dump(args) => verbs::dump::run(args),
             Self::Trim(args) => verbs::trim::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),
+            Self::Stress(args) => verbs::stress::run(args, registry),
             Self::Scenes(args) => verbs::scenes::run(args),
             Self::Techniques(args) => verbs::techniques::run(args, registry),
             Self::Tune(args) => verbs::tune::run(args, registry),

@@ -13,6 +13,7 @@
 #   ROUNDS=3          turns of each program
 #   BUDGET=1          seconds for each scene, ray count and turn
 #   SCENES=ABC        which scenes
+#   SIZE=512          pixels along a side
 #   TECHNIQUE=soft-shadow-volumes  SET=horizon=on   ours
 #   BUILD=yes         "no" takes the bench that an earlier run has built
 #   CARGO_TARGET_DIR  as for cargo
@@ -41,7 +42,7 @@ if [ -z "$(nice -n -19 true 2>&1)" ]; then first=(nice -n -19); fi
 for round in $(seq "${ROUNDS:-3}"); do
   for scene in $(echo "${SCENES:-ABC}" | fold -w1); do
     echo "$(date +%H:%M:%S) load $(cut -d' ' -f1-3 /proc/loadavg): scene $scene, round $round" >&2
-    "${first[@]}" "$work/soft_bench" --scenes "$scene" --budget "${BUDGET:-1}" --npy "$work" \
+    "${first[@]}" "$work/soft_bench" --scenes "$scene" --size "${SIZE:-512}" --budget "${BUDGET:-1}" --npy "$work" \
       --technique "${TECHNIQUE:-soft-shadow-volumes}" --set "${SET:-horizon=on}" \
       --json "$work/ours-$scene-$round.json" >"$work/turn.txt"
     "$python" "$here/embree_turn.py" "$peers" "$scene" "$work" "${BUDGET:-1}" "$round"

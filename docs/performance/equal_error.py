@@ -5,8 +5,9 @@
 
 Embree's time is that of the eye pass plus that of as many shadow rays a pixel as
 have our error: between two measured counts, log-linear in the error. It leaves out
-building its trees and all shading; ours leaves out building wedges and includes
-shading and counting. Both ways of looking at it are in the table.
+building its trees and all shading; ours includes shading and counting, and leaves out
+or includes what is built of the meshes before the frame. All ways of looking at it are
+in the table.
 """
 import argparse
 import glob
@@ -41,12 +42,12 @@ def main():
         ours = json.load(open(os.path.join(a.work, 'ours-%s.json' % name)))[0]
         found = equal(theirs['rows'], ours['rmse'])
         turns.append(dict(scene=theirs['scene'], ours=ours, theirs=theirs, equal=found))
-    print('| scene | RMSE | ours, ms | wedges built in, ms | Embree: rays at equal RMSE | shadow rays, ms | eye rays, ms | shadow rays / ours | eye and shadow rays / ours | the same / ours with building |')
-    print('| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |')
+    print('| scene | RMSE | ours, ms | built in, ms | Embree: rays at equal RMSE | shadow rays, ms | eye rays, ms | shadow rays / ours | eye and shadow rays / ours | the same / ours with building | shadow rays / ours with building |')
+    print('| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |')
     for scene in sorted({t['scene'] for t in turns}):
         of = [t for t in turns if t['scene'] == scene]
         if any(t['equal'] is None for t in of):
-            print('| %s | %.5f | | | more than 4096 | | | | | |' % (scene, of[0]['ours']['rmse']))
+            print('| %s | %.5f | | | more than 4096 | | | | | | |' % (scene, of[0]['ours']['rmse']))
             continue
         mid = lambda f: statistics.median(f(t) for t in of)
         spread = lambda f: '**%.1f** (%.1f to %.1f)' % (mid(f), min(map(f, of)), max(map(f, of)))
@@ -56,7 +57,8 @@ def main():
         eye = lambda t: t['theirs']['eye']['median']
         cells = ['%.5f' % of[0]['ours']['rmse'], '%.2f' % mid(frame), '%.2f' % mid(built), '%.0f' % mid(lambda t: t['equal'][0]),
                  '%.1f' % mid(rays), '%.1f' % mid(eye), spread(lambda t: rays(t) / frame(t)),
-                 spread(lambda t: (rays(t) + eye(t)) / frame(t)), spread(lambda t: (rays(t) + eye(t)) / (frame(t) + built(t)))]
+                 spread(lambda t: (rays(t) + eye(t)) / frame(t)), spread(lambda t: (rays(t) + eye(t)) / (frame(t) + built(t))),
+                 spread(lambda t: rays(t) / (frame(t) + built(t)))]
         print('| %s | %s |' % (scene, ' | '.join(cells)))
     print()
     biases = {t['scene']: t['theirs']['bias'] for t in turns}

@@ -8,6 +8,7 @@
 //! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
 //! * [`light_view`]: pictures of the casters from a light, and positions in them
 //! * [`convolution`]: shadow maps that are filtered before they are compared
+//! * [`line_samples`]: depth complexity of lights along lines
 //! * [`moments`]: shadow maps filtered as means of functions of depth
 //! * [`penumbra`]: penumbra wedges of papers I and II
 //! * [`planar_shadows`]: counts of hidden points over planes
@@ -34,6 +35,7 @@ pub mod coverage;
 pub mod coverage_table;
 pub mod deferred;
 pub mod light_view;
+pub mod line_samples;
 pub mod moments;
 pub mod penumbra;
 pub mod planar_shadows;
@@ -98,6 +100,7 @@ stages! {
         transform::Surfaces: "transform.surfaces" 1,
         transform::FullScreen: "transform.full-screen" 1,
         transform::Facets: "transform.facets" 1,
+        transform::NumberedFacets: "transform.numbered-facets" 1,
         smoothies::SmoothieVertices: "smoothies.vertices" 1,
         soft_volumes::HardQuads: "soft-volumes.hard-quads" 1,
         soft_volumes::EyeCount: "soft-volumes.eye-count" 1,
@@ -111,6 +114,8 @@ stages! {
         surface::Lambert: "surface.lambert" 1,
         surface::Phong: "surface.phong" 1,
         surface::AmbientWithPosition: "surface.ambient-with-position" 1,
+        surface::LeaningAmbient: "surface.leaning-ambient" 1,
+        surface::AmbientWithNumber: "surface.ambient-with-number" 1,
         surface::FacetValue: "surface.facet-value" 1,
         surface::Shadowed<surface::Lambert>: "surface.shadowed-lambert" 1,
         surface::Shadowed<surface::Phong>: "surface.shadowed-phong" 1,
@@ -144,11 +149,11 @@ stages! {
         convolution::prefilter::LessMean: "convolution.less-mean" 1,
         convolution::prefilter::SumStep: "convolution.sum-step" 1,
         convolution::visibility::ConvolutionShadow<convolution::look_up::Mipmaps>:
-            "convolution.shadow-mipmaps" 1,
+            "convolution.shadow-mipmaps" 2,
         convolution::visibility::ConvolutionShadow<convolution::look_up::FloatTables>:
-            "convolution.shadow-float-tables" 1,
+            "convolution.shadow-float-tables" 2,
         convolution::visibility::ConvolutionShadow<convolution::look_up::IntegerTables>:
-            "convolution.shadow-integer-tables" 1,
+            "convolution.shadow-integer-tables" 2,
         cones::patches::PatchPicture: "cones.patch-picture" 1,
         cones::bounds::PatchBounds: "cones.patch-bounds" 1,
         cones::ConeShadow<cones::DiscSamples>: "cones.shadow-disc-samples" 1,
@@ -177,6 +182,7 @@ stages! {
         shadow_maps::Shadow<backprojection::Backprojection<backprojection::turned::TurnedBits>>:
             "backprojection.turned-bits" 1,
         shadow_rays::ShadowRays: "shadow-rays" 1,
+        line_samples::LineSamples: "line-samples" 1,
         planar_shadows::PlanarShadow: "planar-shadows" 1,
         shadow_maps::Shadow<moments::occluder_plane::OccluderPlane>: "moments.occluder-plane" 1,
         moments::image::MomentImage: "moments.image" 1,
@@ -193,7 +199,7 @@ mod tests {
     #[test]
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
-        assert_eq!(table.vertex_shaders().count(), 12);
-        assert_eq!(table.fragment_shaders().count(), 68);
+        assert_eq!(table.vertex_shaders().count(), 13);
+        assert_eq!(table.fragment_shaders().count(), 71);
     }
 }

@@ -97,8 +97,8 @@ pub struct ReceiverPlane<L: Lanes> {
     pub projection: Projection,
 }
 
-/// How receivers' planes are seen in a view. Texture 2 holds planes: unit normals and
-/// distances from the eye.
+/// How receivers' planes are seen in a view. A texture, of filters the one in slot 2, holds
+/// planes: unit normals and distances from the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReceiverPlanes {
     /// Unit vectors to the right, downwards and along the view's axis.
@@ -113,16 +113,17 @@ impl ReceiverPlanes {
     /// base. Of one that is seen from the side that the light does not reach, it is
     /// level: it is not in the picture.
     #[inline(always)]
-    fn plane<L: Lanes>(
+    pub(crate) fn plane<L: Lanes>(
         &self,
         l: L,
         f: &mut Fragment<'_, L>,
         mapping: &LightMapping,
         position: [F32<L>; 3],
         distance: F32<L>,
+        slot: usize,
     ) -> ReceiverPlane<L> {
         let own = [f.column(), f.row(), I32::splat(l, 0)];
-        let [x, y, z, from_eye] = texel_of(l, f, PLANES, own);
+        let [x, y, z, from_eye] = texel_of(l, f, slot, own);
         let normal = [x, y, z];
         let along = each3(
             #[inline(always)]
@@ -248,7 +249,7 @@ impl<F: ShadowFilter> FragmentShader for Shadow<F> {
         );
         let distance = receives.select_f32(place.distance, one);
         let plane = match &self.planes {
-            Some(planes) => Some(planes.plane(l, f, mapping, [x, y, z], distance)),
+            Some(planes) => Some(planes.plane(l, f, mapping, [x, y, z], distance, PLANES)),
             None => None,
         };
         let receiver = Receiver {

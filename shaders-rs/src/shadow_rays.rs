@@ -40,17 +40,22 @@ uniforms!(Table { log_width });
 
 impl Table {
     #[inline(always)]
-    fn read<L: Lanes>(
+    pub(crate) fn read<L: Lanes>(
         &self,
         l: L,
         f: &mut Fragment<'_, L>,
         slot: usize,
         number: I32<L>,
     ) -> [F32<L>; 4] {
+        texel_of(l, f, slot, self.place(l, number))
+    }
+
+    /// Where a texel is.
+    #[inline(always)]
+    pub(crate) fn place<L: Lanes>(&self, l: L, number: I32<L>) -> [I32<L>; 3] {
         let mask = (1i32 << self.log_width) - 1;
         let column = number & I32::splat(l, mask);
-        let row = number >> self.log_width;
-        texel_of(l, f, slot, [column, row, I32::splat(l, 0)])
+        [column, number >> self.log_width, I32::splat(l, 0)]
     }
 }
 

@@ -88,23 +88,7 @@ impl FragmentShader for AmbientWithPosition {
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
         Constant(self.ambient).shade(l, f);
-        let (x, y) = (f.x(), f.y());
-        let rays = &self.rays;
-        let direction = each3(
-            #[inline(always)]
-            |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
-        );
-        let normal = each3(
-            #[inline(always)]
-            |i| f.varying(3 + i),
-        );
-        let slope = dot3(normal, direction);
-        let steep = slope.abs().gt(length(direction) * EDGE_ON);
-        let distance = f.varying(6) / slope;
-        let [px, py, pz] = each3(
-            #[inline(always)]
-            |i| steep.select_f32(direction[i] * distance + rays.eye[i], f.varying(i)),
-        );
+        let (normal, [px, py, pz]) = seen_position(&self.rays, f);
         let w = if self.receives { 1.0 } else { 0.0 };
         f.set_color(1, [px, py, pz, F32::splat(l, w)]);
         if self.plane {
@@ -112,6 +96,89 @@ impl FragmentShader for AmbientWithPosition {
             let distance = f.varying(6);
             f.set_color(2, [x, y, z, distance]);
         }
+    }
+}
+
+/// Ambient light that leans to one side: `max(even + slope · n, 0)` for each colour, n
+/// the unit normal towards the eye's side, alpha 0. Varyings are those of
+/// [`crate::transform::Surfaces`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeaningAmbient {
+    /// Light on a surface that faces neither to nor from where it comes.
+    pub even: [f32; 3],
+    /// What is added to red per unit of the normal.
+    pub red: [f32; 3],
+    /// Likewise to green.
+    pub green: [f32; 3],
+    /// Likewise to blue.
+    pub blue: [f32; 3],
+}
+uniforms!(LeaningAmbient {
+    even,
+    red,
+    green,
+    blue
+});
+
+impl FragmentShader for LeaningAmbient {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let (normal, _) = inputs(f);
+        let least = F32::splat(l, f32::MIN_POSITIVE);
+        let scale = F32::splat(l, facing(f)) / normal.dot(normal).max(least).sqrt();
+        let slopes = [self.red, self.green, self.blue];
+        let [r, g, b] = each3(
+            #[inline(always)]
+            |c| {
+                let [x, y, z] = slopes[c];
+                let [nx, ny, nz] = normal.0;
+                let lean = (nx * x + ny * y + nz * z) * scale;
+                (lean + F32::splat(l, self.even[c])).max(F32::splat(l, 0.0))
+            },
+        );
+        f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
+    }
+}
+
+/// The facet's normal, and where the pixel's ray meets it.
+#[inline(always)]
+fn seen_position<L: Lanes>(rays: &PixelRays, f: &Fragment<'_, L>) -> ([F32<L>; 3], [F32<L>; 3]) {
+    let (x, y) = (f.x(), f.y());
+    let direction = each3(
+        #[inline(always)]
+        |i| (x * rays.right[i] + y * rays.down[i]) + rays.first[i],
+    );
+    let normal = each3(
+        #[inline(always)]
+        |i| f.varying(3 + i),
+    );
+    let slope = dot3(normal, direction);
+    let steep = slope.abs().gt(length(direction) * EDGE_ON);
+    let distance = f.varying(6) / slope;
+    let position = each3(
+        #[inline(always)]
+        |i| steep.select_f32(direction[i] * distance + rays.eye[i], f.varying(i)),
+    );
+    (normal, position)
+}
+
+/// As [`AmbientWithPosition`], with the number of the facet, the last varying of
+/// [`crate::transform::NumberedFacets`], for w.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientWithNumber {
+    /// The colour.
+    pub ambient: [f32; 4],
+    /// The camera.
+    pub rays: PixelRays,
+}
+uniforms!(AmbientWithNumber { ambient, rays });
+
+impl FragmentShader for AmbientWithNumber {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        Constant(self.ambient).shade(l, f);
+        let (_, [x, y, z]) = seen_position(&self.rays, f);
+        f.set_color(1, [x, y, z, f.varying(7)]);
     }
 }
 

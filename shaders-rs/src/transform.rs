@@ -108,6 +108,25 @@ impl VertexShader for Facets {
     }
 }
 
+/// As [`Facets`], and a number of the facet: attribute 7, varying 7, flat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NumberedFacets(pub ClipFromWorld);
+uniforms!(NumberedFacets(clip_from_world));
+
+impl VertexShader for NumberedFacets {
+    fn varyings(&self) -> &[Interpolation] {
+        const P: Interpolation = Interpolation::Perspective;
+        const F: Interpolation = Interpolation::Flat;
+        &[P, P, P, F, F, F, F, F]
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, v: &mut Vertex<'_, L>) {
+        Facets(self.0).shade(l, v);
+        v.set_varying(7, v.attribute(7));
+    }
+}
+
 /// Three vertices without data that cover the whole viewport at depth 0; no
 /// varyings.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,9 +4,14 @@ use gnomon_raster::{
     AccessBatch, AccessObserver, Error, Gpu, GpuConfig, PassReport, Recording, Wants,
 };
 
-use crate::profile::{Client, Judge, Levels, Profile, ProfileError, Traffic, TrafficRow};
+use crate::profile::{
+    Client, Judge, JudgeOptions, Levels, Order, Profile, ProfileError, Traffic, TrafficRow,
+};
 use crate::report::{ClientBytes, DrawRow, FrameReport, PassRow};
 use crate::{FrameShape, Witness};
+
+/// Behind the name of a profile whose tiles passes share.
+pub const MERGED: &str = " (passes merged)";
 
 /// A frame under a profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +25,8 @@ pub struct Judged {
 }
 
 /// Draws `recording` once, with skipping off, and judges it under each of `profiles`:
-/// one that cannot do what the frame does has an error instead.
+/// one that cannot do what the frame does has an error instead. Behind a tiler follows the
+/// same with passes merged, where some can be: its name says so.
 ///
 /// # Errors
 /// The frame cannot be drawn.
@@ -34,8 +40,12 @@ pub fn judge(
         return Ok(Vec::new());
     }
     let shape = FrameShape::of(recording);
-    let judges = profiles.iter().map(|p| Judge::new(p, &shape));
-    let mut judges = Judges(judges.collect());
+    let mut judges = Judges(
+        profiles
+            .iter()
+            .flat_map(|p| of_profile(p, &shape))
+            .collect(),
+    );
     let mut gpu = Gpu::new(GpuConfig {
         skip: false,
         ..config
@@ -50,8 +60,30 @@ pub fn judge(
     gpu.submit_observed(&recording.list, wants, &mut judges)?;
     let finished = judges.0.into_iter();
     Ok(finished
-        .map(|j| j.map(|judge| Judged::new(frame, &judge.finish())))
+        .map(|j| j.map(|judge| Judged::new(frame, &name_merged(judge.finish()))))
         .collect())
+}
+
+/// Judges by `profile`: of a tiler one with its passes as they are, and one with them merged
+/// where that says anything else.
+fn of_profile(profile: &Profile, shape: &FrameShape) -> Vec<Result<Judge, ProfileError>> {
+    let judge = |merged| {
+        let options = JudgeOptions {
+            merged,
+            ..JudgeOptions::default()
+        };
+        Judge::with_options(profile, shape, options)
+    };
+    let merged = (profile.order == Order::Tiled).then(|| judge(true));
+    let merged = merged.filter(|j| j.as_ref().is_ok_and(Judge::merges_any));
+    [judge(false)].into_iter().chain(merged).collect()
+}
+
+fn name_merged(mut traffic: Traffic) -> Traffic {
+    if !traffic.merges.is_empty() {
+        traffic.profile += MERGED;
+    }
+    traffic
 }
 
 /// Every one of them hears everything.

@@ -12,7 +12,7 @@ use crate::format::blob::Blobs;
 use crate::format::decode::{Fault, Written};
 use crate::format::file::{self, Contents};
 use crate::format::section::{Entry, tag_text};
-use crate::format::{counters, v1};
+use crate::format::{columns, counters, v1};
 use crate::meta::Meta;
 use crate::shape::FrameShape;
 
@@ -325,17 +325,43 @@ impl Trace {
         frame: u32,
         part: u32,
     ) -> Result<Option<(Entry, Vec<u8>)>, TraceError> {
+        match self.entry(tag, frame, part)? {
+            Some(entry) => Ok(Some((entry, entry.unpack(&self.file)?.data))),
+            None => Ok(None),
+        }
+    }
+
+    /// Where a section is, if it is of a version that is known.
+    fn entry(&self, tag: [u8; 4], frame: u32, part: u32) -> Result<Option<Entry>, TraceError> {
         let mut entries = self.contents.entries.iter();
         let found = entries.find(|e| (e.tag, e.frame, e.part) == (tag, frame, part));
-        let Some(entry) = found else {
-            return Ok(None);
-        };
-        if entry.version != v1::VERSION {
-            let (given, known) = (entry.version, v1::VERSION);
-            let reason = format!("it is version {given}, version {known} is known here");
-            return Err(entry.wrong(&reason));
+        match found {
+            Some(entry) if entry.version != v1::VERSION => {
+                let (given, known) = (entry.version, v1::VERSION);
+                let reason = format!("it is version {given}, version {known} is known here");
+                Err(entry.wrong(&reason))
+            }
+            found => Ok(found.copied()),
         }
-        Ok(Some((*entry, entry.unpack(&self.file)?.data)))
+    }
+
+    /// How many accesses of a frame are written down, as its sections say at their start:
+    /// nothing else of them is read, or checked. `None` where none were recorded.
+    ///
+    /// # Errors
+    /// There is no such frame, or a section cannot be read.
+    pub fn event_count(&self, frame: usize) -> Result<Option<u64>, TraceError> {
+        if !self.meta.traffic {
+            return Ok(None);
+        }
+        let mut count = 0_u64;
+        for pass in 0..self.shape(frame)?.passes.len() {
+            let entry = self.entry(TRAF, frame as u32, pass as u32)?;
+            let entry = entry.ok_or_else(|| self.missing(TRAF, frame))?;
+            let records = columns::records(entry.peek(&self.file)?);
+            count = count.saturating_add(records);
+        }
+        Ok(Some(count))
     }
 
     /// Whether a section is there.

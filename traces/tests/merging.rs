@@ -8,12 +8,14 @@ use anchor_support::sums::unequal_sum;
 use anchor_support::{Case, draw_layers, judge};
 use gnomon_raster::state::{ColorTargetState, DepthStencilState};
 use gnomon_raster::{
-    ColorAttachment, Draw, Format, LoadOp, Recording, RenderPass, StoreOp, Subresource, TextureId,
+    ColorAttachment, Draw, Format, Gpu, GpuConfig, LoadOp, Recording, RenderPass, StoreOp,
+    Subresource, TextureId,
 };
-use gnomon_traces::FrameShape;
 use gnomon_traces::profile::{
     Client, Judge, JudgeOptions, Levels, MergeRefusal, Profile, Traffic, profile,
 };
+use gnomon_traces::report::FrameReport;
+use gnomon_traces::{FrameShape, judged};
 
 const TILERS: [&str; 2] = ["tbr-mali", "tbr-adreno"];
 const ZS: Client = Client::DepthStencil;
@@ -72,8 +74,38 @@ fn shadow_frame(depth_format: Format) -> Recording {
     r
 }
 
-fn judged(recording: &Recording, profile: &Profile, merged: bool) -> Traffic {
+fn traffic(recording: &Recording, profile: &Profile, merged: bool) -> Traffic {
     judge(recording, profile, options(merged))
+}
+
+/// What reports show: tilers twice, where merging says anything else.
+#[test]
+fn reports_have_tilers_merged_too() {
+    let profiles = ["imr-2008", "tbr-mali"].map(|name| profile(name).unwrap());
+    let names = |recording: &Recording| {
+        let shape = FrameShape::of(recording);
+        let config = GpuConfig::default();
+        let mut gpu = Gpu::new(config).unwrap();
+        gpu.load(recording).unwrap();
+        let report = gpu.submit(&recording.list).unwrap();
+        let frame = FrameReport::new(&shape, &report, config);
+        let all = judged::judge(recording, &frame, &profiles, config).unwrap();
+        let found = all.into_iter().map(|j| j.unwrap());
+        let found = found.map(|j| (j.profile, j.frame.bytes()));
+        found.collect::<Vec<_>>()
+    };
+    let frame = shadow_frame(Format::Depth24Stencil8);
+    let said = names(&frame);
+    let [immediate, apart, merged] = &said[..] else {
+        panic!("{said:?}")
+    };
+    assert_eq!((&*immediate.0, &*apart.0), ("imr-2008", "tbr-mali"));
+    assert_eq!(merged.0, "tbr-mali (passes merged)");
+    assert!(merged.1 < apart.1, "{said:?}");
+    // A pass alone is not merged with anything.
+    let mut alone = frame;
+    alone.list.passes.truncate(1);
+    assert_eq!(names(&alone).len(), 2);
 }
 
 fn refusals(profile: &Profile, shape: &FrameShape) -> Vec<Option<MergeRefusal>> {
@@ -109,11 +141,11 @@ fn shadow_volumes_stay_on_chip() {
         let frame = shadow_frame(format);
         for name in TILERS {
             let profile = profile(name).unwrap();
-            let apart = judged(&frame, &profile, false);
+            let apart = traffic(&frame, &profile, false);
             assert_eq!(ends(&apart, ZS), [2 * bytes * PIXELS, 3 * bytes * PIXELS]);
             assert_eq!(ends(&apart, COLOR), [4 * PIXELS, 2 * 4 * PIXELS]);
             assert_eq!(apart.merges, []);
-            let merged = judged(&frame, &profile, true);
+            let merged = traffic(&frame, &profile, true);
             let refused: Vec<_> = merged.merges.iter().map(|m| &m.refused).collect();
             assert_eq!(refused, [&None, &None], "{name}");
             assert_eq!(ends(&merged, ZS), [0, bytes * PIXELS], "{name}");
@@ -131,7 +163,7 @@ fn ends_of_a_group_are_charged_to_its_first_and_last_passes() {
     ambient.color[0].load = LoadOp::Load;
     let lit = frame.list.passes[2].depth_stencil.as_mut().unwrap();
     (lit.depth_store, lit.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
-    let traffic = judged(&frame, &mali(), true);
+    let traffic = traffic(&frame, &mali(), true);
     assert_eq!(ends(&traffic, ZS), [0, 0]);
     assert_eq!(ends(&traffic, COLOR), [4 * PIXELS, 4 * PIXELS]);
     let of_pass = |pass: usize| {
@@ -150,7 +182,7 @@ fn only_tilers_merge() {
     let frame = shadow_frame(Format::Depth24Stencil8);
     for name in ["naive", "compulsory", "gnomon", "imr-2003", "imr-2008"] {
         let profile = profile(name).unwrap();
-        let [apart, asked] = [false, true].map(|m| judged(&frame, &profile, m));
+        let [apart, asked] = [false, true].map(|m| traffic(&frame, &profile, m));
         assert_eq!(apart, asked, "{name}");
         assert_eq!(asked.merges, []);
     }
@@ -160,7 +192,7 @@ fn only_tilers_merge() {
 #[test]
 fn merging_moves_ends_of_passes_only() {
     let frame = shadow_frame(Format::Depth24Stencil8);
-    let [apart, merged] = [false, true].map(|m| judged(&frame, &mali(), m));
+    let [apart, merged] = [false, true].map(|m| traffic(&frame, &mali(), m));
     assert_eq!(apart.rows.len(), merged.rows.len());
     for (a, b) in apart.rows.iter().zip(&merged.rows) {
         assert_eq!(a.total().logical, b.total().logical, "{}", a.label);
@@ -352,12 +384,12 @@ fn more_attachments_make_smaller_tiles() {
     profile.tile.depth_bytes = 4 * 64;
     // Depth alone halves the tiles of all passes; nothing is left for merging to change.
     let list = |t: &Traffic| t.client(Client::PolygonList).dram.bytes();
-    let [apart, merged] = [false, true].map(|m| judged(&frame, &profile, m));
+    let [apart, merged] = [false, true].map(|m| traffic(&frame, &profile, m));
     assert_eq!(list(&apart), list(&merged));
     // Colour halves those of passes that have it, merged those of the volumes too.
     profile.tile.color_bytes = 4 * 64;
     profile.tile.depth_bytes = 4 * 256;
-    let [apart, merged] = [false, true].map(|m| judged(&frame, &profile, m));
+    let [apart, merged] = [false, true].map(|m| traffic(&frame, &profile, m));
     let of = |t: &Traffic, pass: usize| {
         let rows = t.rows.iter().filter(|r| r.pass == Some(pass));
         rows.map(|r| r.client(Client::PolygonList).dram.bytes())
@@ -388,7 +420,7 @@ fn what_freezes_low_resolution_z_lasts_as_long_as_the_tiles() {
     passes[2].draws = vec![solid(1), solid(2)];
     let adreno = profile("tbr-adreno").unwrap();
     let culled = |merged| {
-        let traffic = judged(&frame, &adreno, merged);
+        let traffic = traffic(&frame, &adreno, merged);
         let rows = traffic.rows.iter().filter(|r| r.pass == Some(2));
         rows.map(|r| r.hiz.culled).sum::<u64>()
     };
@@ -413,7 +445,7 @@ fn sums_of_several_passes_are_equal_each_way() {
         for name in PROFILES {
             let profile = profile(name).unwrap();
             for merged in [false, true] {
-                let traffic = judged(&frame, &profile, merged);
+                let traffic = traffic(&frame, &profile, merged);
                 assert!(traffic.total().dram.bytes() > 0);
                 assert_eq!(unequal_sum(&traffic), None, "{name} {format:?} {merged}");
             }
@@ -427,16 +459,16 @@ fn negative_control_what_is_lost_is_noticed() {
     let frame = shadow_frame(Format::Depth24Stencil8);
     for name in ["imr-2008", "tbr-mali"] {
         let profile = profile(name).unwrap();
-        let all = judged(&frame, &profile, true);
+        let all = traffic(&frame, &profile, true);
         for i in 0..all.rows.len() {
-            let mut traffic = judged(&frame, &profile, true);
+            let mut traffic = traffic(&frame, &profile, true);
             let lost = traffic.rows.remove(i).total();
             let expected = (lost != Levels::default()).then(|| "places of".to_owned());
             let found = unequal_sum(&traffic).map(|w| w[..9].to_owned());
             assert_eq!(found, expected, "{name} {i}");
         }
     }
-    let mut traffic = judged(&frame, &profile("imr-2008").unwrap(), false);
+    let mut traffic = traffic(&frame, &profile("imr-2008").unwrap(), false);
     assert!(traffic.caches[0].dirty.dirtied > 0);
     traffic.caches[0].dirty.flushed += 1;
     assert_eq!(unequal_sum(&traffic), Some("dirty bytes".to_owned()));

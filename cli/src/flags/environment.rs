@@ -1,7 +1,9 @@
 //! Flags of environment lighting.
 
 use clap::{Args, ValueEnum};
-use gnomon_pipeline::world::environment::{FitSettings, LightForm, MapSettings, ResidualRule};
+use gnomon_pipeline::world::environment::{
+    AmbientForm, FitSettings, LightForm, LightPlace, MapSettings, ResidualRule,
+};
 use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
 
 /// A map that lights the scene alone, and how lights are fitted to it.
@@ -23,6 +25,15 @@ pub(crate) struct EnvArgs {
     /// face's mean where there was more) or mean (up to the face's mean)
     #[arg(long, value_name = "RULE", value_enum, requires = "env")]
     env_residual: Option<ResidualArg>,
+    /// Where a light lies: texels (over those it took, as the paper has it), centroid
+    /// (as large, about their luminance centroid) or moments (about it, and as large as
+    /// their luminance is spread) [default: moments]
+    #[arg(long, value_name = "PLACE", value_enum, requires = "env")]
+    env_place: Option<PlaceArg>,
+    /// What the lights leave: even (the same from everywhere, as the paper has it) or
+    /// harmonic (spherical harmonics up to order 1) [default: harmonic]
+    #[arg(long, value_name = "FORM", value_enum, requires = "env")]
+    env_ambient: Option<AmbientArg>,
     /// Most texels along a face of the cube that the map is spread over [default: 128]
     #[arg(long, value_name = "N", requires = "env")]
     env_side: Option<usize>,
@@ -53,6 +64,21 @@ enum ResidualArg {
     Mean,
 }
 
+/// Where lights lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum PlaceArg {
+    Texels,
+    Centroid,
+    Moments,
+}
+
+/// What lights leave is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum AmbientArg {
+    Even,
+    Harmonic,
+}
+
 impl EnvArgs {
     /// What is asked for with that many lights, if anything is.
     pub(crate) fn request(&self, lights: Option<usize>) -> Option<EnvironmentRequest> {
@@ -77,6 +103,17 @@ impl EnvArgs {
                     Some(ResidualArg::Excess) => ResidualRule::Excess,
                     Some(ResidualArg::Mean) => ResidualRule::Mean,
                     None => fit.residual,
+                },
+                place: match self.env_place {
+                    Some(PlaceArg::Texels) => LightPlace::Texels,
+                    Some(PlaceArg::Centroid) => LightPlace::Centroid,
+                    Some(PlaceArg::Moments) => LightPlace::Moments,
+                    None => fit.place,
+                },
+                ambient: match self.env_ambient {
+                    Some(AmbientArg::Even) => AmbientForm::Even,
+                    Some(AmbientArg::Harmonic) => AmbientForm::Harmonic,
+                    None => fit.ambient,
                 },
             },
         })

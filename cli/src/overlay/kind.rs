@@ -23,6 +23,8 @@ pub(crate) enum OverlayKind {
     Saturation,
     /// Where that sum is not the truth, and why
     Artefacts,
+    /// How full the channels of coverage are, and where carries took room in them
+    Carries,
     /// The map of the environment with the fitted lights outlined
     EnvLights,
 }
@@ -40,6 +42,7 @@ impl OverlayKind {
             Self::Overlap => "overlap",
             Self::Saturation => "saturation",
             Self::Artefacts => "artefacts",
+            Self::Carries => "carries",
             Self::EnvLights => "env-lights",
         }
     }

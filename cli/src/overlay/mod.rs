@@ -1,6 +1,7 @@
 //! Pictures that explain a render, one file each.
 
 mod artefacts;
+mod carries;
 mod env_lights;
 mod kind;
 mod overdraw;
@@ -14,6 +15,7 @@ mod traffic;
 mod volumes;
 mod wedges;
 
+use gnomon_pipeline::measure::carries::Carries;
 use gnomon_pipeline::measure::heat::{Heat, PassWork};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::{Params, SceneWedges};
@@ -31,6 +33,8 @@ pub(crate) struct Source<'a> {
     pub(crate) done: &'a Rendered,
     /// Recorded only where [`needs_heat`] says so.
     pub(crate) heat: Option<&'a Heat>,
+    /// Recorded only where they are drawn.
+    pub(crate) carries: Option<&'a Carries>,
     /// Built only where they are drawn.
     pub(crate) wedges: Option<&'a SceneWedges>,
 }
@@ -68,6 +72,7 @@ pub(crate) fn draw(kind: OverlayKind, source: &Source<'_>) -> Picture {
         OverlayKind::Overlap => overlap::draw(source),
         OverlayKind::Saturation => saturation::draw(source),
         OverlayKind::Artefacts => artefacts::draw(source),
+        OverlayKind::Carries => carries::draw(source),
         OverlayKind::EnvLights => env_lights::draw(source),
     }
 }

@@ -17,6 +17,7 @@ pub(crate) mod replay;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenes;
+pub(crate) mod stress;
 pub(crate) mod techniques;
 pub(crate) mod traffic;
 pub(crate) mod trim;

@@ -18,6 +18,7 @@ mod report;
 mod reproduce;
 mod same_bits;
 mod show;
+mod stress;
 mod sweep;
 mod traces;
 mod traffic;

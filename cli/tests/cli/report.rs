@@ -1,7 +1,7 @@
 //! The page that `report` writes. What a browser makes of it: `tests/report/check.mjs`.
 
 use gnomon_pipeline::technique::Params;
-use gnomon_traces::profile::{Judge, profile};
+use gnomon_traces::profile::{Judge, JudgeOptions, profile};
 use gnomon_traces::{Meta, RecordOptions, Trace, record};
 use serde_json::Value;
 
@@ -234,6 +234,35 @@ fn bytes_of_profiles_are_the_judges() {
             assert_has(&page, &[&cells]);
         }
     }
+}
+
+/// Tilers stand there twice where passes can share their tiles, others once.
+#[test]
+fn tilers_are_shown_merged_too() {
+    let folder = Folder::new("report-merged");
+    let page = page(&folder, "--profile imr-2008,tbr-mali");
+    record_demo(&folder.path("a.gnt"));
+    let trace = Trace::open(folder.path("a.gnt")).unwrap();
+    let shape = trace.shape(0).unwrap();
+    let bytes = [false, true].map(|merged| {
+        let options = JudgeOptions {
+            merged,
+            ..JudgeOptions::default()
+        };
+        let mali = profile("tbr-mali").unwrap();
+        let mut judge = Judge::with_options(&mali, &shape, options).unwrap();
+        trace.events(0, &mut judge).unwrap();
+        judge.finish().total().dram.bytes()
+    });
+    assert!(bytes[1] < bytes[0], "{bytes:?}");
+    let said = ["tbr-mali", "tbr-mali (passes merged)"];
+    for (name, bytes) in said.into_iter().zip(bytes) {
+        assert_has(
+            &page,
+            &[&format!("Under {name}, memory moves {bytes} bytes")],
+        );
+    }
+    assert!(!page.contains("imr-2008 (passes merged)"));
 }
 
 /// Hardware that cannot do what the frame does says so on the page.

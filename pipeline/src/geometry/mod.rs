@@ -9,6 +9,7 @@ pub mod coverage;
 pub mod harmonics;
 pub(crate) mod layers;
 pub(crate) mod light_contact;
+pub mod line_sampling;
 pub(crate) mod outlines;
 pub mod silhouette;
 pub mod silhouette_loops;

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use gnomon_raster::texture::ColorTexel;
 use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource, memory};
+use gnomon_shaders::line_samples::NEGATIVE_DEPTH;
 use thiserror::Error;
 
 use crate::technique::{
@@ -344,6 +345,11 @@ fn event_warnings(report: &SubmitReport, roles: &Roles) -> Vec<Warning> {
             "colour channels saturated while light was added; dim the lights or use color-format=rgba16f",
         ),
         (
+            "negative-depth-complexity",
+            counted(report, NEGATIVE_DEPTH),
+            "receivers counted fewer casters than none along some line across a light; their visibility is wrong",
+        ),
+        (
             "nan",
             total.events.nan_canonicalised,
             "shader values were NaN and have been replaced",
@@ -364,6 +370,12 @@ fn event_warnings(report: &SubmitReport, roles: &Roles) -> Vec<Warning> {
         .filter(|(_, count, _)| *count != 0)
         .map(warning)
         .collect()
+}
+
+/// What shaders counted under that name.
+fn counted(report: &SubmitReport, name: &str) -> u64 {
+    let counts = report.shader_counts().into_iter();
+    counts.filter(|(of, _)| *of == name).map(|(_, n)| n).sum()
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -10,7 +10,9 @@
 //! volumes get wrong. In shadow maps a facet turned away is nearer to its own depth
 //! than the bias, and comes out lit.
 //!
-//! The papers do not do this; it changes nothing for receivers that cast no shadow.
+//! The papers do not do this (`horizon=off`); it changes nothing for receivers that cast
+//! no shadow. Spheres, whose share before a plane differs over a facet, and lights with an
+//! image, whose colours do not lie alike before it, are left out, which is said.
 
 use glam::DVec3;
 use gnomon_raster::state::{BlendState, ColorTargetState};
@@ -20,13 +22,13 @@ use gnomon_shaders::surface::FacetValue;
 use super::passes::{SceneDraws, Targets};
 use super::visibility::{VisibilityTexture, attachment};
 use crate::geometry::area_light::AreaLight;
-use crate::technique::{Param, TechniqueError};
+use crate::technique::{Param, Warning};
 use crate::world::light::{HardLight, Light, LightShape};
 
 pub(crate) const HORIZON: Param<bool> = Param::switch(
     "horizon",
-    false,
-    "limit what a caster's facet sees to the light before its plane; not in the papers",
+    true,
+    "limit what a caster's facet sees to the light before its plane; off: as in the papers",
 );
 
 /// A light of which facets see what is before their plane.
@@ -41,34 +43,23 @@ impl Horizon {
     /// Of light number `number`.
     ///
     /// # Errors
-    /// The light is a sphere, whose share before a plane differs over a facet, or has an
-    /// image, whose colours do not lie alike before it.
-    pub(crate) fn of(
-        technique: &'static str,
-        number: usize,
-        light: &Light,
-        has_image: bool,
-    ) -> Result<Self, TechniqueError> {
-        let refused = |why: String| TechniqueError::UnsuitableLight {
-            technique,
-            light: number,
-            why,
-            valid: "points, directions, and flat lights of one colour for horizon=on",
+    /// Why the light is left out.
+    pub(crate) fn of(number: usize, light: &Light, has_image: bool) -> Result<Self, Warning> {
+        let left_out = |why: &str| Warning {
+            code: "horizon-left-out",
+            count: 1,
+            message: format!("light {number} {why}: facets are not limited to what is before them"),
         };
         match light.shape {
-            LightShape::Sphere { .. } => Err(refused(
-                "it is a sphere, and horizon=on was asked for".into(),
-            )),
+            LightShape::Sphere { .. } => Err(left_out("is a sphere")),
             LightShape::Point { .. } | LightShape::Directional { .. } => {
                 Ok(Self::Hard(light.hard()))
             }
-            _ if has_image => Err(refused(
-                "it has an image, and horizon=on was asked for".into(),
-            )),
-            _ => {
-                let area = AreaLight::new(&light.shape).map_err(|e| refused(e.to_string()))?;
-                Ok(Self::Area(area))
-            }
+            _ if has_image => Err(left_out("has an image")),
+            _ => match AreaLight::new(&light.shape) {
+                Ok(area) => Ok(Self::Area(area)),
+                Err(why) => Err(left_out(&format!("has no area ({why})"))),
+            },
         }
     }
 
@@ -90,7 +81,8 @@ impl Horizon {
                 normal
             };
             let share = self.before(view.absolute(a), seen.try_normalize()?)?;
-            Some([share as f32, 0.0, 0.0, 0.0])
+            let texel = (share as f32 - visibility.offset) / visibility.scale;
+            Some([texel, 0.0, 0.0, 0.0])
         };
         let target = ColorTargetState {
             blend: Some(BlendState::MIN),

@@ -7,9 +7,11 @@
 //! over the scene ([`passes`]), and textures of positions and visibility with draws
 //! over the whole screen ([`visibility`]).
 
+pub(crate) mod backdrop;
 pub(crate) mod casters;
 pub(crate) mod far_surface;
 pub mod frame_settings;
+pub(crate) mod hierarchy;
 pub(crate) mod horizon;
 pub mod light_samples;
 pub(crate) mod maps;
@@ -17,6 +19,7 @@ pub mod passes;
 pub mod shadowed_frame;
 pub(crate) mod surface_draw;
 pub(crate) mod surface_vertices;
+pub(crate) mod tables;
 pub mod targets;
 pub mod view;
 pub mod visibility;

@@ -11,8 +11,10 @@ use gnomon_raster::state::{
     StencilOperation, StencilState,
 };
 use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
-use gnomon_shaders::surface::{AmbientWithPosition, Constant, Lambert, Phong};
-use gnomon_shaders::transform::{Facets, Points, Surfaces};
+use gnomon_shaders::surface::{
+    AmbientWithNumber, AmbientWithPosition, Constant, Lambert, LeaningAmbient, Phong,
+};
+use gnomon_shaders::transform::{Facets, NumberedFacets, Points, Surfaces};
 
 use super::frame_settings::{FrameSettings, Shading};
 use super::surface_draw::SurfaceDraw;
@@ -22,7 +24,7 @@ pub use super::view::View;
 use super::visibility::{Positions, VisibilityTexture, attachment, binding};
 use crate::technique::VisibilityOutput;
 use crate::world::mesh::narrow;
-use crate::world::scene::{Material, Scene};
+use crate::world::scene::{Material, Object, Scene};
 
 /// Where a lit pass adds light, and how much of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +89,7 @@ impl<'a> SceneDraws<'a> {
     /// Clears all attachments, then draws ambient light and depth.
     pub fn ambient_pass(&self, targets: &Targets) -> RenderPass {
         let [r, g, b] = self.scene.background;
-        let ambient = self.scene.ambient;
+        let ambient = self.even_ambient();
         let draw = |s: &SurfaceDraw<'_>| {
             s.draw(RenderPipeline {
                 label: "ambient".into(),
@@ -117,7 +119,7 @@ impl<'a> SceneDraws<'a> {
         let rays = self.view.pixel_rays();
         let draw = |s: &SurfaceDraw<'_>| {
             let shader = AmbientWithPosition {
-                ambient: s.ambient(self.scene.ambient),
+                ambient: s.ambient(self.even_ambient()),
                 receives: s.object.receives,
                 plane: positions.planes.is_some(),
                 rays,
@@ -137,6 +139,77 @@ impl<'a> SceneDraws<'a> {
         let mut pass = self.ambient_pass(targets);
         let cleared = |texture| attachment(texture, LoadOp::Clear([0.0; 4]));
         pass.color.extend(positions.textures().map(cleared));
+        pass.draws = self.surfaces.iter().map(draw).collect();
+        pass
+    }
+
+    /// Ambient light of the first pass: none where [`Self::leaning_ambient`] draws it.
+    fn even_ambient(&self) -> [f32; 3] {
+        if self.scene.ambient_slope == [[0.0; 3]; 3] {
+            self.scene.ambient
+        } else {
+            [0.0; 3]
+        }
+    }
+
+    /// Ambient light that depends on normals, over what the ambient pass drew; `None`
+    /// where the scene has none such.
+    pub(crate) fn leaning_ambient(&self, targets: &Targets) -> Option<RenderPass> {
+        let slope = self.scene.ambient_slope;
+        if slope == [[0.0; 3]; 3] {
+            return None;
+        }
+        let draw = |s: &SurfaceDraw<'_>| {
+            let albedo = s.material.albedo;
+            let even = s.ambient(self.scene.ambient);
+            let of = |c: usize| slope[c].map(|v| v * albedo[c]);
+            let shader = LeaningAmbient {
+                even: [even[0], even[1], even[2]],
+                red: of(0),
+                green: of(1),
+                blue: of(2),
+            };
+            s.draw(RenderPipeline {
+                label: "ambient from directions".into(),
+                vertex: Surfaces(self.view.clip_from_world).stage(),
+                fragment: Some(shader.stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: vec![ColorTargetState::ADDITIVE],
+            })
+        };
+        Some(RenderPass {
+            label: "ambient from directions".into(),
+            color: targets.color(LoadOp::Load),
+            depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
+            draws: self.surfaces.iter().map(draw).collect(),
+        })
+    }
+
+    /// Clears and draws as [`Self::ambient_pass_with_positions`], with a number of each
+    /// object's triangles for w of positions.
+    pub(crate) fn ambient_pass_with_numbers(
+        &self,
+        targets: &Targets,
+        positions: &Positions,
+        number: &dyn Fn(&Object, u32) -> f32,
+    ) -> RenderPass {
+        let rays = self.view.pixel_rays();
+        let draw = |s: &SurfaceDraw<'_>| {
+            let ambient = s.ambient(self.even_ambient());
+            let pipeline = RenderPipeline {
+                label: "ambient".into(),
+                vertex: NumberedFacets(self.view.clip_from_world).stage(),
+                fragment: Some(AmbientWithNumber { ambient, rays }.stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: DepthStencilState::opaque(),
+                color_targets: vec![ColorTargetState::OPAQUE; 2],
+            };
+            s.draw_numbered(&self.view, pipeline, &|t| number(s.object, t))
+        };
+        let mut pass = self.ambient_pass(targets);
+        let clear = LoadOp::Clear([0.0; 4]);
+        pass.color.push(attachment(positions.texture, clear));
         pass.draws = self.surfaces.iter().map(draw).collect();
         pass
     }

@@ -16,8 +16,9 @@
 //! # Ok::<(), TechniqueError>(())
 //! ```
 
-use gnomon_raster::{CommandList, Recording};
+use gnomon_raster::{CommandList, Recording, RenderPass};
 
+use super::backdrop::Backdrop;
 use super::frame_settings::FrameSettings;
 use super::horizon::Horizon;
 use super::passes::{LitTest, SceneDraws, Targets, label};
@@ -28,7 +29,7 @@ use crate::technique::{
     apart,
 };
 use crate::world::light::Light;
-use crate::world::scene::Scene;
+use crate::world::scene::{Object, Scene};
 
 /// What is said of a frame, gathered light after light.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,13 +59,13 @@ pub struct ShadowedFrame<'a> {
     /// What is said of the frame.
     pub notes: Notes,
     passes: Vec<Pass>,
+    backdrop: Option<Backdrop>,
     horizon: Option<HorizonOf>,
 }
 
-/// For which technique facets are limited to what is before them.
+/// Facets are limited to what is before them.
 #[derive(Clone, Copy)]
 struct HorizonOf {
-    technique: &'static str,
     has_image: bool,
 }
 
@@ -124,6 +125,7 @@ impl<'a> ShadowedFrame<'a> {
     ) -> Result<Self, TechniqueError> {
         let mut recording = Recording::default();
         let targets = Targets::create(size, settings, &mut recording)?;
+        let backdrop = Backdrop::create(scene, size, &mut recording)?;
         Ok(Self {
             scene,
             size,
@@ -133,6 +135,7 @@ impl<'a> ShadowedFrame<'a> {
             lights: settings.lights(scene)?,
             notes: Notes::default(),
             passes: Vec::new(),
+            backdrop,
             horizon: None,
         })
     }
@@ -140,8 +143,19 @@ impl<'a> ShadowedFrame<'a> {
     /// Adds the pass of depth and ambient light.
     pub fn with_ambient(mut self) -> Self {
         let pass = self.draws.ambient_pass(&self.targets);
-        self.passes.push(Pass::new(PassRole::Ambient, pass));
+        self.push_ambient(pass);
         self
+    }
+
+    /// `pass` with what is behind the scene, and ambient light that depends on normals.
+    fn push_ambient(&mut self, mut pass: RenderPass) {
+        let attachments = pass.color.len();
+        pass.draws
+            .extend(self.backdrop.map(|b| b.draw(attachments)));
+        self.passes.push(Pass::new(PassRole::Ambient, pass));
+        let leaning = self.draws.leaning_ambient(&self.targets);
+        self.passes
+            .extend(leaning.map(|p| Pass::new(PassRole::Ambient, p)));
     }
 
     /// Adds the pass of depth, ambient light and the positions of what is seen.
@@ -162,11 +176,27 @@ impl<'a> ShadowedFrame<'a> {
         Ok(self.with_ambient_and(positions))
     }
 
+    /// The same, w of positions being what `number` gives to triangles of objects.
+    ///
+    /// # Errors
+    /// The GPU refuses the texture.
+    pub(crate) fn with_numbered_positions(
+        mut self,
+        number: &dyn Fn(&Object, u32) -> f32,
+    ) -> Result<(Self, Positions), TechniqueError> {
+        let positions = Positions::create(self.size, &mut self.recording)?;
+        let pass = self
+            .draws
+            .ambient_pass_with_numbers(&self.targets, &positions, number);
+        self.push_ambient(pass);
+        Ok((self, positions))
+    }
+
     fn with_ambient_and(mut self, positions: Positions) -> (Self, Positions) {
         let pass = self
             .draws
             .ambient_pass_with_positions(&self.targets, &positions);
-        self.passes.push(Pass::new(PassRole::Ambient, pass));
+        self.push_ambient(pass);
         (self, positions)
     }
 
@@ -177,16 +207,8 @@ impl<'a> ShadowedFrame<'a> {
 
     /// Limits what facets see to the light before their plane, where `wanted`; an
     /// image on the light rules that out.
-    pub(crate) fn with_horizon(
-        mut self,
-        technique: &'static str,
-        wanted: bool,
-        has_image: bool,
-    ) -> Self {
-        self.horizon = wanted.then_some(HorizonOf {
-            technique,
-            has_image,
-        });
+    pub(crate) fn with_horizon(mut self, wanted: bool, has_image: bool) -> Self {
+        self.horizon = wanted.then_some(HorizonOf { has_image });
         self
     }
 
@@ -218,7 +240,7 @@ impl<'a> ShadowedFrame<'a> {
                 lights: &self.lights,
             };
             let own = shadows(&mut light)?;
-            let horizon = horizon_pass(self.horizon, &light, test)?;
+            let horizon = horizon_pass(self.horizon, &mut light, test);
             let lit = self
                 .draws
                 .lit_pass(&self.targets, number, &light.label("lit"), test);
@@ -261,14 +283,21 @@ impl<'a> ShadowedFrame<'a> {
 
 fn horizon_pass(
     horizon: Option<HorizonOf>,
-    light: &LightTurn<'_, '_>,
+    light: &mut LightTurn<'_, '_>,
     test: LitTest,
-) -> Result<Option<Pass>, TechniqueError> {
+) -> Option<Pass> {
     let (Some(of), LitTest::Visibility(visibility)) = (horizon, test) else {
-        return Ok(None);
+        return None;
     };
-    let horizon = Horizon::of(of.technique, light.number, light.light(), of.has_image)?;
-    let label = light.label("horizon");
-    let pass = horizon.pass(label, light.draws, light.targets, visibility);
-    Ok(pass.map(|pass| Pass::new(PassRole::Horizon, pass)))
+    match Horizon::of(light.number, light.light(), of.has_image) {
+        Ok(horizon) => {
+            let label = light.label("horizon");
+            let pass = horizon.pass(label, light.draws, light.targets, visibility);
+            pass.map(|pass| Pass::new(PassRole::Horizon, pass))
+        }
+        Err(left_out) => {
+            light.notes.warnings.push(left_out);
+            None
+        }
+    }
 }

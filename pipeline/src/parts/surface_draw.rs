@@ -25,6 +25,8 @@ pub(crate) struct SurfaceDraw<'a> {
     pub(crate) material: Material,
     vertices: Arc<VertexBuffer>,
     indices: Arc<IndexBuffer>,
+    /// Of each triangle that in the object's mesh.
+    numbers: Vec<u32>,
     pub(crate) primitive: PrimitiveState,
 }
 
@@ -41,20 +43,28 @@ impl<'a> SurfaceDraw<'a> {
             let own = part.triangles.iter().flat_map(|&t| surface.of(t));
             IndexBuffer::new(own.flatten().copied().collect())
         };
+        let numbers = |part: &MaterialPart| {
+            let own = part.triangles.iter();
+            own.flat_map(|&t| surface.of(t).iter().map(move |_| t))
+                .collect()
+        };
         let parts = object.painted();
+        let numbers: Vec<Vec<u32>> = parts.iter().map(numbers).collect();
         let indices: Vec<IndexBuffer> = parts.iter().map(indices).collect();
         let vertices = Arc::new(VertexBuffer {
             data: surface.data,
             stride: STRIDE,
         });
-        let draw = |(part, indices): (MaterialPart, IndexBuffer)| Self {
+        let draw = |((part, indices), numbers): ((MaterialPart, IndexBuffer), Vec<u32>)| Self {
             object,
             material: part.material,
             vertices: vertices.clone(),
             indices: Arc::new(indices),
+            numbers,
             primitive: primitive.clone(),
         };
-        parts.into_iter().zip(indices).map(draw).collect()
+        let parts = parts.into_iter().zip(indices).zip(numbers);
+        parts.map(draw).collect()
     }
 
     /// Six floats each: position relative to the view's origin, and normal. All
@@ -79,13 +89,46 @@ impl<'a> SurfaceDraw<'a> {
 
     /// Each triangle with its plane, for [`gnomon_shaders::transform::Facets`].
     pub(crate) fn draw_facets(&self, view: &View, pipeline: RenderPipeline) -> Draw {
-        let plane = |corners: [DVec3; 3]| {
-            let [a, b, c] = corners;
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            let [x, y, z] = narrow(normal);
-            Some([x, y, z, normal.dot(a - view.eye()) as f32])
-        };
+        let plane = |corners: [DVec3; 3]| Some(plane_from_eye(view, corners));
         self.draw_flat(pipeline, &plane)
+    }
+
+    /// Each triangle with its plane and the number that `number` gives to that of the mesh,
+    /// for [`gnomon_shaders::transform::NumberedFacets`].
+    pub(crate) fn draw_numbered(
+        &self,
+        view: &View,
+        pipeline: RenderPipeline,
+        number: &dyn Fn(u32) -> f32,
+    ) -> Draw {
+        let mut data = Vec::with_capacity(self.numbers.len() * 3 * 8);
+        for (triangle, of) in self.triangles().zip(&self.numbers) {
+            let corners = triangle.map(|i| self.corner(i));
+            let plane = plane_from_eye(view, corners.map(widen));
+            for p in corners {
+                data.extend(p);
+                data.extend(plane);
+                data.push(number(*of));
+            }
+        }
+        self.draw_alone(pipeline, VertexBuffer { data, stride: 8 })
+    }
+
+    fn corner(&self, i: u32) -> [f32; 3] {
+        let at = i as usize * self.vertices.stride;
+        [0, 1, 2].map(|k| self.vertices.data[at + k])
+    }
+
+    /// Triangles of three vertices each.
+    fn draw_alone(&self, pipeline: RenderPipeline, vertices: VertexBuffer) -> Draw {
+        let vertices = Arc::new(vertices);
+        let indices = (0..vertices.len() as u32).collect();
+        Draw::indexed(
+            &self.object.name,
+            &Arc::new(pipeline),
+            &vertices,
+            &Arc::new(IndexBuffer::new(indices)),
+        )
     }
 
     /// The triangles to which `flat` gives four numbers, for the flat varyings of
@@ -95,14 +138,9 @@ impl<'a> SurfaceDraw<'a> {
         pipeline: RenderPipeline,
         flat: &dyn Fn([DVec3; 3]) -> Option<[f32; 4]>,
     ) -> Draw {
-        let stride = self.vertices.stride;
-        let corner = |i: u32| {
-            let at = i as usize * stride;
-            [0, 1, 2].map(|k| self.vertices.data[at + k])
-        };
         let mut data = Vec::new();
         for triangle in self.indices.indices().chunks_exact(3) {
-            let corners = [0, 1, 2].map(|k| corner(triangle[k]));
+            let corners = [0, 1, 2].map(|k| self.corner(triangle[k]));
             let Some(numbers) = flat(corners.map(widen)) else {
                 continue;
             };
@@ -111,14 +149,7 @@ impl<'a> SurfaceDraw<'a> {
                 data.extend(numbers);
             }
         }
-        let vertices = Arc::new(VertexBuffer { data, stride: 7 });
-        let indices = (0..vertices.len() as u32).collect();
-        Draw::indexed(
-            &self.object.name,
-            &Arc::new(pipeline),
-            &vertices,
-            &Arc::new(IndexBuffer::new(indices)),
-        )
+        self.draw_alone(pipeline, VertexBuffer { data, stride: 7 })
     }
 
     pub(crate) fn draw(&self, pipeline: RenderPipeline) -> Draw {
@@ -129,6 +160,13 @@ impl<'a> SurfaceDraw<'a> {
             &self.indices,
         )
     }
+}
+
+/// A facet's unit normal and distance from the eye.
+fn plane_from_eye(view: &View, [a, b, c]: [DVec3; 3]) -> [f32; 4] {
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let [x, y, z] = narrow(normal);
+    [x, y, z, normal.dot(a - view.eye()) as f32]
 }
 
 /// Whether some vertex may be nearer than the near plane.

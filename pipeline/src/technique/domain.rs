@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use super::nested::Nested;
+
 /// A value as declared: a default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
@@ -106,7 +108,7 @@ impl Domain {
             Self::Decimal { numbers, .. } => text.parse().is_ok_and(|x| takes_decimal(x, numbers)),
             Self::List { .. } => text.split('+').all(|n| n.parse::<u32>().is_ok()),
             Self::Images { .. } => text.split(',').all(|name| !name.is_empty()),
-            Self::Technique => !text.is_empty(),
+            Self::Technique => Nested::parse(text).is_some_and(|n| !n.technique.is_empty()),
         }
     }
 
@@ -141,7 +143,10 @@ impl Display for Domain {
             Self::Decimal { numbers, .. } => decimal_numbers(numbers),
             Self::List { .. } => "whole numbers from 0 with + between them, such as 0+3".to_owned(),
             Self::Images { .. } => "image files with commas between them".to_owned(),
-            Self::Technique => "a technique: NAME:KEY=VALUE:...".to_owned(),
+            Self::Technique => {
+                "a technique: NAME:KEY=VALUE:..., in parentheses where VALUE is one with settings"
+                    .to_owned()
+            }
         };
         match &words[..] {
             "" => f.write_str(&numbers),

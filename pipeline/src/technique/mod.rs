@@ -9,6 +9,7 @@ mod condition;
 mod domain;
 mod frame;
 mod kept;
+mod nested;
 mod param;
 mod params;
 mod pass;
@@ -21,10 +22,11 @@ pub use condition::{Condition, LightFact};
 pub use domain::{Decimals, Domain, Value, Whole};
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
 pub use kept::{KeptPictures, PictureKey, PictureToKeep};
-pub use param::{Choice, Nested, Number, Param, ParamInfo, Setting, count, join};
+pub use nested::Nested;
+pub use param::{Choice, Number, Param, ParamInfo, Setting, count, join};
 pub use params::{LIGHT_FRAME, Params, SETTING_WITHOUT_EFFECT};
 pub use pass::{DrawRole, Pass, PassRole, Roles, apart};
-pub use wedges::{SceneWedges, WedgeKind};
+pub use wedges::{CarryChannels, SceneWedges, WedgeKind};
 
 use crate::geometry::caster::RefusedCaster;
 use crate::truth::oracle::cache::{CacheWarning, OracleCache};
@@ -111,6 +113,15 @@ pub trait Technique: Sync {
         _scene: &Scene,
         _params: &Params,
     ) -> Result<Option<SceneWedges>, TechniqueError> {
+        Ok(None)
+    }
+
+    /// How the attachments of its wedge passes, which each begin without coverage, are
+    /// shared by coverage and carries; `None` where nothing is carried.
+    ///
+    /// # Errors
+    /// As the frame: settings that rule each other out.
+    fn carry_channels(&self, _params: &Params) -> Result<Option<CarryChannels>, TechniqueError> {
         Ok(None)
     }
 }

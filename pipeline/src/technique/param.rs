@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 
 use super::condition::Condition;
 use super::domain::{Decimals, Domain, Value, Whole};
+use super::nested::Nested;
 use crate::world::light_image::LightSequence;
 
 /// A parameter without its type: what lists, help and sweeps need to know.
@@ -129,22 +130,9 @@ impl Setting for Option<Vec<usize>> {
     }
 }
 
-/// A technique and the settings behind its name, not yet judged.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Nested {
-    /// Name of the technique.
-    pub technique: String,
-    /// Assignments `key=value`.
-    pub settings: Vec<String>,
-}
-
 impl Setting for Nested {
     fn read(text: &str) -> Option<Self> {
-        let mut parts = text.split(':').map(str::to_owned);
-        Some(Self {
-            technique: parts.next()?,
-            settings: parts.collect(),
-        })
+        Self::parse(text)
     }
 }
 

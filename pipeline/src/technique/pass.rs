@@ -50,6 +50,8 @@ pub enum PassRole {
     Radiance,
     /// Rays from receivers to lights.
     ShadowRays,
+    /// Lines across lights.
+    LineSamples,
     /// One picture added to another.
     AddPicture,
     /// Anything else.

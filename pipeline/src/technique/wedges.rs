@@ -23,6 +23,23 @@ impl WedgeKind {
     }
 }
 
+/// How 8-bit channels that wedges add coverage to are shared: a contribution takes some bits,
+/// and what is left above them is for carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CarryChannels {
+    /// Bits of a contribution.
+    pub bits: u32,
+    /// Channels of a buffer that coverage is added to, from red on.
+    pub count: usize,
+}
+
+impl CarryChannels {
+    /// Contributions that fit for certain.
+    pub fn capacity(self) -> u32 {
+        255 / ((1 << self.bits) - 1)
+    }
+}
+
 /// Wedges of all lights that shine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneWedges {

@@ -4,7 +4,9 @@
 //! A scene under an environment has tens of lights, few of which make shadows
 //! that are seen as such. Each technique draws its own lights, ambient light with
 //! the first ones only; then the second picture is added to the first. So any two
-//! techniques of the registry go together, and neither knows of it. The price is
+//! techniques of the registry go together, and neither knows of it; any number of them,
+//! since one of both may be a mixture itself:
+//! `rest=mixed-lights:brightest=4:first=(pcss:samples=16):rest=shadow-map`. The price is
 //! a second colour and depth buffer and a second pass for depth, all of it
 //! counted.
 
@@ -24,6 +26,7 @@ use crate::technique::{
     ShadowKind, Source, Technique, TechniqueError, Warning,
 };
 use crate::techniques::find;
+use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
 
 /// The registry's entry.
@@ -58,6 +61,9 @@ const REST: Param<Nested> = Param::technique(
 
 /// Parameters that both techniques get as they are, where they have them.
 const SHARED: [&str; 4] = ["skip", "shading", "color-format", "depth-format"];
+
+/// Mixtures within a mixture.
+const DEEPEST: usize = 16;
 
 /// Luminance of linear Rec. 709 RGB.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -157,6 +163,17 @@ impl Technique for MixedLights {
         }
     }
 
+    /// Visibility is that of a light of the first technique, if it has any.
+    fn light_image(&self, params: &Params) -> Result<Option<LightImage>, TechniqueError> {
+        let settings = MixedSettings::read(params)?;
+        let none = match &settings.chosen {
+            Some(chosen) => chosen.is_empty(),
+            None => settings.brightest == 0,
+        };
+        let seen = if none { settings.rest } else { settings.first };
+        seen.technique.light_image(&seen.params)
+    }
+
     fn frame(
         &self,
         scene: &Scene,
@@ -171,9 +188,9 @@ impl Technique for MixedLights {
             ([], others) => rest.frame(scene, others, size)?,
             (bright, others) => {
                 let dark = Scene {
-                    ambient: [0.0; 3],
                     background: [0.0; 3],
-                    ..scene.clone()
+                    backdrop: None,
+                    ..scene.without_ambient()
                 };
                 let frame = first.frame(scene, bright, size)?;
                 joined(frame, rest.frame(&dark, others, size)?)
@@ -196,12 +213,13 @@ impl Inner {
     fn read(which: &Param<Nested>, outer: &Params) -> Result<Self, TechniqueError> {
         let given = outer.get(which)?;
         let technique = find(&given.technique)?;
-        if technique.name() == outer.technique() {
+        let within = |text: &String| text.matches(outer.technique()).count();
+        if given.settings.iter().map(within).sum::<usize>() >= DEEPEST {
             return Err(TechniqueError::BadValue {
                 technique: outer.technique(),
                 key: which.info.name,
                 value: given.technique,
-                valid: "any technique but mixed-lights".to_owned(),
+                valid: format!("mixtures of at most {DEEPEST} techniques more"),
             });
         }
         let mut params = Params::parse(technique, given.settings)?;
@@ -406,6 +424,58 @@ mod tests {
         assert!(twice.srgb == other.srgb);
     }
 
+    /// A mixture within the mixture: three techniques, each with its own lights, add up.
+    #[test]
+    fn any_number_of_techniques_goes_together() {
+        let scene = scene();
+        let set = [
+            "brightest=1",
+            "first=unshadowed",
+            "rest=mixed-lights:brightest=1:first=(pcss:samples=4:map-size=64):rest=shadow-volumes",
+        ];
+        let mixed = drawn(&scene, MIXED, &set);
+        let part = |technique, light: usize, set: &[&str]| {
+            let mut part = scene.clone();
+            part.lights = vec![scene.lights[light].clone()];
+            part.ambient = if light == 1 { scene.ambient } else { [0.0; 3] };
+            drawn(&part, technique, set)
+        };
+        let parts = [
+            part("unshadowed", 1, &[]),
+            part("pcss", 2, &["samples=4", "map-size=64"]),
+            part("shadow-volumes", 0, &[]),
+        ];
+        for i in (0..72 * 54).filter(|i| mixed.depth[*i] < 1.0) {
+            for c in 0..3 {
+                let sum: f32 = parts.iter().map(|p| p.color[i][c]).sum();
+                let off = (mixed.color[i][c] - sum).abs();
+                assert!(off <= 3e-3 * sum.max(0.1), "{i}: {sum}");
+            }
+        }
+        let two = drawn(
+            &scene,
+            MIXED,
+            &["brightest=1", "first=unshadowed", "rest=pcss:samples=4"],
+        );
+        assert!(two.srgb != mixed.srgb);
+    }
+
+    /// Images on lights are the truth's too, however deep they are asked for.
+    #[test]
+    fn images_on_lights_are_told() {
+        let technique = find(MIXED).unwrap();
+        let image = |set: &[&str]| {
+            let params = Params::parse(technique, set).unwrap();
+            technique.light_image(&params).unwrap()
+        };
+        let own = "soft-shadow-volumes:light-image=fire";
+        assert!(image(&[]).is_none());
+        assert!(image(&[&format!("first={own}")]).is_some());
+        assert!(image(&[&format!("rest={own}")]).is_none());
+        let deep = format!("rest=mixed-lights:first=({own})");
+        assert!(image(&["brightest=0", &deep]).is_some());
+    }
+
     #[test]
     fn techniques_are_checked() {
         let technique = find(MIXED).unwrap();
@@ -416,7 +486,10 @@ mod tests {
             done.err().unwrap().to_string()
         };
         assert!(refused("first=soft-shadow-volume").contains("did you mean"));
-        assert!(refused("rest=mixed-lights").contains("any technique but"));
+        let deep = format!("rest=mixed-lights{}", ":rest=mixed-lights".repeat(40));
+        assert!(refused(&deep).contains("at most 16"));
+        let open = Params::parse(technique, ["rest=mixed-lights:first=(pcss"]).unwrap_err();
+        assert!(open.to_string().contains("parentheses"), "{open}");
         assert!(refused("rest=shadow-volumes:method=zz").contains("auto|zpass|zfail"));
         assert!(refused("light=7").contains("light 7"));
         assert!(refused("choose=0+7").contains("light 7"));

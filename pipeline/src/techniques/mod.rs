@@ -9,6 +9,7 @@ mod cone_culling;
 mod convolution_soft_shadows;
 mod deferred_shadowing;
 mod heckbert_herf;
+mod line_sampled_shadow_volumes;
 mod mixed_lights;
 mod moment_maps;
 mod pcf;
@@ -31,6 +32,7 @@ use cone_culling::ConeCulling;
 use convolution_soft_shadows::ConvolutionSoftShadows;
 use deferred_shadowing::DeferredShadowing;
 use heckbert_herf::HeckbertHerf;
+use line_sampled_shadow_volumes::LineSampledShadowVolumes;
 use mixed_lights::MixedLights;
 use moment_maps::MomentMaps;
 use pcf::Pcf;
@@ -62,6 +64,7 @@ pub fn all() -> &'static [&'static dyn Technique] {
         &PenumbraWedgesRestructured,
         &SoftShadowVolumes,
         &SoftShadowVolumesOptimised,
+        &LineSampledShadowVolumes,
         &ShadowMap,
         &Pcf,
         &Pcss,

@@ -6,6 +6,7 @@
 use gnomon_shaders::shadow_maps::{BoxTaps, CubicTaps};
 
 use crate::parts::frame_settings::FrameSettings;
+use crate::parts::horizon::HORIZON;
 use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Planes, Sources};
 use crate::technique::{
     Capabilities, Condition, Frame, Param, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
@@ -77,6 +78,7 @@ impl Technique for Pcf {
         param_list!(
             &[KERNEL.info, TAPS.info],
             MapSettings::PARAMS,
+            &[HORIZON.info],
             FrameSettings::PARAMS
         )
     }
@@ -105,12 +107,11 @@ impl Technique for Pcf {
             },
         };
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,
             maps: settings.maps,
-            horizon: false,
+            horizon: params.get(&HORIZON)?,
             margin,
         };
         mapped.frame(

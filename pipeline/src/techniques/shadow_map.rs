@@ -5,6 +5,7 @@ use gnomon_shaders::shadow_maps::BoxTaps;
 
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
+use crate::parts::horizon::HORIZON;
 use crate::parts::maps::mapped::{MapSettings, Mapped, Margin, Sources};
 use crate::technique::{
     Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
@@ -24,7 +25,7 @@ impl Technique for ShadowMap {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        param_list!(MapSettings::PARAMS, FrameSettings::PARAMS)
+        param_list!(MapSettings::PARAMS, &[HORIZON.info], FrameSettings::PARAMS)
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -38,12 +39,11 @@ impl Technique for ShadowMap {
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: FrameSettings::read(params)?,
             maps: MapSettings::read(params)?,
-            horizon: false,
+            horizon: params.get(&HORIZON)?,
             margin: Margin::ONE_TEXEL,
         };
         mapped.frame(

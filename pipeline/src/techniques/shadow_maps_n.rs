@@ -108,7 +108,6 @@ impl Technique for ShadowMapsN {
     ) -> Result<Frame, TechniqueError> {
         let settings = ShadowMapsNSettings::read(params)?;
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,

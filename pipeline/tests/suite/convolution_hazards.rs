@@ -166,6 +166,7 @@ where
             strength: 30.0,
             falloff: 10.0,
         },
+        plane_offset: None,
     };
     let [csm, csm_z, depth] = images;
     bench.pass(shadow.into(), &[at, csm, csm_z, depth], &[out]);

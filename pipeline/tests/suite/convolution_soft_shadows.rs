@@ -235,19 +235,6 @@ fn what_only_skips_changes_no_bit() {
                 "{name} {filter}"
             );
             assert_eq!(lazy.color_hash(), all.color_hash(), "{name} {filter}");
-            let work = |p: &Rendered| -> u64 {
-                let labels = ["basis", "mips", "tables"];
-                labels.iter().map(|l| counted(p, l).fragments.written).sum()
-            };
-            println!(
-                "{name} {filter} {fit}: {} of {} texels",
-                work(&lazy),
-                work(&all)
-            );
-            assert!(work(&lazy) <= work(&all));
-            if filter == "filter=mip" {
-                assert!(work(&lazy) < work(&all), "no level left out");
-            }
         }
     }
 }
@@ -388,6 +375,87 @@ fn what_stands_for_other_lights_is_said() {
     }
 }
 
+/// Eq. 9 on plates, where depths are known: what sharpening makes of visibility is the
+/// power of what there is without, strength and falloff as they are given.
+#[test]
+fn sharpening_is_the_power_that_is_asked_for() {
+    let scene = plates();
+    let plain = ["m=16", "filter=sat-u32"];
+    let without = soft(&scene, &[&plain[..], &["a=0"]].concat());
+    let range = ["near", "far"].map(|name| {
+        let found = without.figures.iter().find(|f| f.name == name);
+        found.unwrap().value
+    });
+    let behind = (PLATES.floor_distance - PLATES.plate_distance) / (range[1] - range[0]);
+    let pixels = floor_pixels(&scene, &without);
+    for (strength, falloff) in [(30.0, 2.0), (3.0, 2.0), (3.0, 0.5)] {
+        let power = 1.0 + strength * libm::exp(-falloff * behind);
+        let off = |strength: f64| {
+            let [a, b] = [format!("a={strength}"), format!("b={falloff}")];
+            let with = soft(&scene, &[&plain[..], &[&a, &b]].concat());
+            let (mut worst, mut judged) = (0.0f64, 0);
+            for &(i, _) in &pixels {
+                let [v, sharp] = [&without, &with].map(|p| f64::from(p.visibility[i]));
+                // Where little is hidden the mean depth of blockers is less than exact.
+                if (0.05..0.9).contains(&v) {
+                    worst = worst.max((sharp - libm::pow(v, power)).abs());
+                    judged += 1;
+                }
+            }
+            println!("{a} {b}: power {power:.2}, off by {worst:.4} of {judged}");
+            assert!(judged > 100, "{a} {b}: {judged}");
+            worst
+        };
+        assert!(off(strength) < 0.02);
+        // Half of it is seen.
+        assert!(off(0.5 * strength) > 0.04);
+    }
+}
+
+/// A parallelogram is no rectangle, which is said; a turned rectangle is one.
+#[test]
+fn sheared_lights_are_told() {
+    let mut scene = plates();
+    let told = |scene: &Scene| {
+        let picture = soft(scene, &["map-size=64"]);
+        let mut warnings = picture.warnings.iter();
+        warnings.any(|w| w.code == "light-as-rectangle")
+    };
+    assert!(!told(&scene));
+    let LightShape::Rectangle { edge_u, edge_v, .. } = &mut scene.lights[0].shape else {
+        unreachable!()
+    };
+    let (u, v) = (*edge_u, *edge_v);
+    (*edge_u, *edge_v) = (u + v, v - u);
+    assert!(!told(&scene), "turned");
+    let LightShape::Rectangle { edge_u, edge_v, .. } = &mut scene.lights[0].shape else {
+        unreachable!()
+    };
+    (*edge_u, *edge_v) = (u + v * 0.5, v);
+    assert!(told(&scene), "sheared");
+}
+
+/// Steep lit faces shadow themselves less where their planes lessen depths, and a level
+/// floor stays as it is.
+#[test]
+fn planes_of_receivers_bring_steep_faces_nearer_to_the_truth() {
+    let error = |scene: &Scene, set: &[&str]| {
+        let truth = VisibilityImage::of_scene(scene, 0, SIZE, &|| ()).unwrap();
+        let more = ["horizon=on", "a=0", "m=16", "map-size=256"];
+        let picture = soft(scene, &[set, &more].concat());
+        let error = VisibilityError::measure(&truth, SIZE, &picture.visibility);
+        error.unwrap().all.unwrap().rmse
+    };
+    for name in ["peer-a", "demo"] {
+        let scene = builtin::build(name).unwrap();
+        let [off, on] = ["plane-offset=0", "plane-offset=0.5"].map(|s| error(&scene, &[s]));
+        println!("{name}: {off:.4} {on:.4}");
+        assert!(on < 0.85 * off, "{name}: {on} of {off}");
+    }
+    let set = ["plane-offset=0.5", "a=0"];
+    assert!(floor_error(&plates(), &set)[0] < 0.004);
+}
+
 #[test]
 fn settings_that_cannot_be_are_refused() {
     let scene = builtin::build("cylinder").unwrap();
@@ -454,5 +522,23 @@ fn scenes_come_nearer_to_the_truth_with_the_order() {
         assert!(errors[0] < 0.15 && errors[3] < 0.08, "{name} {errors:?}");
         let [sat, exact] = [errors[1], error(&["filter=sat-u32"])];
         assert!((sat - exact).abs() < 2e-3, "{name}: {sat} {exact}");
+    }
+}
+
+/// Visibility to the power 1 + A where B is 0: with A = 1 the square of what is not
+/// sharpened, with A = 3 its fourth power.
+#[test]
+fn sharpening_is_the_power_that_was_asked_for() {
+    let scene = plates();
+    let of = |a: &str| soft(&scene, &[a, "b=0", "map-size=64"]).visibility;
+    let plain = soft(&scene, &["a=0", "map-size=64"]).visibility;
+    for (a, power) in [("a=1", 2), ("a=3", 4)] {
+        let mut between = 0;
+        for (sharp, plain) in of(a).iter().zip(&plain).filter(|(_, p)| p.is_finite()) {
+            let expected = (1..power).fold(*plain, |product, _| product * plain);
+            assert!((sharp - expected).abs() < 1e-3, "{a}: {sharp} of {plain}");
+            between += u32::from(*plain > 0.2 && *plain < 0.8);
+        }
+        assert!(between > 50, "{a}: {between}");
     }
 }

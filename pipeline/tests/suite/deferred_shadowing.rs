@@ -376,7 +376,7 @@ fn coarse_meshes_are_warned_of() {
 #[test]
 fn maps_come_near_the_reference() {
     let scene = lit_by(two_over_a_floor(), &sky(32));
-    let map = &scene.environment.as_ref().unwrap().map.cube;
+    let map = &scene.environment.as_ref().unwrap().map;
     let directions = Directions {
         count: 1024,
         seed: 1,

@@ -1,7 +1,7 @@
 //! Scenes lit by environments: every technique draws them, the same bits however
 //! they are executed, nearer to the reference the more lights there are.
 
-use crate::drawing::drawn_on;
+use crate::drawing::drawn_by_default;
 use gnomon_pipeline::measure::comparison::{
     Directions, EnvironmentReference, RadianceScore, Reference, ReferenceKind,
 };
@@ -32,7 +32,7 @@ fn lights(count: usize) -> FitSettings {
 }
 
 fn drawn(scene: &Scene, technique: &str, set: &[&str], gpu: GpuConfig) -> Rendered {
-    drawn_on(scene, technique, set, [64, 48], gpu)
+    drawn_by_default(scene, technique, set, [64, 48], gpu)
 }
 
 fn scored(
@@ -46,7 +46,7 @@ fn scored(
 }
 
 fn reference(scene: &Scene, count: usize, seed: u64) -> EnvironmentReference {
-    let map = &scene.environment.as_ref().unwrap().map.cube;
+    let map = &scene.environment.as_ref().unwrap().map;
     let directions = Directions { count, seed };
     EnvironmentReference::new(scene, map, [64, 48], directions, true, &|| {})
 }
@@ -146,7 +146,7 @@ fn fitted_lights_come_near_the_reference() {
     let of = |scene: &Scene| scored(scene, technique, &[], &truth);
     let [few, many] = [of(&scene), of(&under_sky("creature", lights(60)))];
     assert!(
-        few.relative_rmse < 0.06 && many.relative_rmse < 0.06,
+        few.relative_rmse < 0.035 && many.relative_rmse < 0.035,
         "{few:?}\n{many:?}"
     );
     assert!(many.psnr > 30.0 && many.flip < 0.08, "{many:?}");
@@ -160,9 +160,45 @@ fn fitted_lights_come_near_the_reference() {
         ..lights(30)
     };
     let mean = of(&under_sky("creature", mean));
-    assert!(mean.rmse > 2.0 * few.rmse, "{mean:?}");
+    // More of the light is ambient, of which order 1 has the direction.
+    assert!(mean.rmse > 1.3 * few.rmse, "{mean:?}");
     let one = of(&under_sky("creature", lights(1)));
     assert!(one.rmse > 2.0 * few.rmse, "{one:?}");
+}
+
+/// The reference is of the file: the cube that lights are fitted to does not matter, and
+/// what is seen behind the scene is the file too, in the picture as in the reference.
+#[test]
+fn the_reference_is_of_the_map_and_not_of_the_cube() {
+    let open = |side| {
+        let settings = MapSettings {
+            side,
+            ..MapSettings::default()
+        };
+        Environment::open("sky", settings).unwrap()
+    };
+    let scene = under_sky("creature", lights(6));
+    let directions = Directions {
+        count: 256,
+        seed: 1,
+    };
+    let of =
+        |side| EnvironmentReference::new(&scene, &open(side), [64, 48], directions, true, &|| {});
+    let [coarse, fine] = [of(4), of(128)];
+    assert!(coarse == fine);
+    let done = drawn(&scene, "unshadowed", &[], GpuConfig::default());
+    let behind = (0..64 * 48).filter(|i| done.depth[*i] == 1.0);
+    let mut colours = Vec::new();
+    for i in behind {
+        // The picture is in halves, the reference is not.
+        let [seen, truth] = [done.srgb[i], fine.srgb[i]];
+        let off = (0..4).map(|c| seen[c].abs_diff(truth[c])).max();
+        assert!(off <= Some(1), "{i}: {seen:?} {truth:?}");
+        colours.push(done.srgb[i]);
+    }
+    colours.sort_unstable();
+    colours.dedup();
+    assert!(colours.len() > 20, "{} colours", colours.len());
 }
 
 /// Two sets of directions agree far better than lights with either.

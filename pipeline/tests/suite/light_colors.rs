@@ -1,7 +1,7 @@
 //! Colours of a light's image, each channel against the truth, in both techniques on soft
 //! shadow volumes.
 
-use crate::drawing::drawn;
+use crate::drawing::{as_published, drawn};
 use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
@@ -18,7 +18,7 @@ const EVEN: [&str; 2] = ["texture-filter=quadlinear", "texture-centred=vertex"];
 fn channels(scene: &Scene, technique: &str, set: &[&str]) -> [Vec<f32>; 3] {
     let seen = drawn(scene, technique, set, SIZE).visibility;
     let technique = find(technique).unwrap();
-    let params = Params::parse(technique, set.iter().copied()).unwrap();
+    let params = Params::parse(technique, as_published(technique).iter().chain(set)).unwrap();
     let frame = technique.frame(scene, SIZE, &params).unwrap();
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
     gpu.load(&frame.recording).unwrap();
@@ -72,6 +72,24 @@ fn each_color_is_seen_of_its_own_half() {
             assert!(own.p99 < limit + 1e-4, "{technique} {channel}: {own:?}");
             assert!(other.rmse > 5.0 * own.rmse, "{technique} {channel}");
         }
+    }
+}
+
+/// Colors in bytes are those in half floats, to two steps: the share itself is stored, and
+/// not twice the share.
+#[test]
+fn eight_bits_of_a_color_are_near_to_sixteen() {
+    let scene = builtin::build("parallel-plates").unwrap();
+    let of = |bits: &str| {
+        let set = ["light-image=halves", bits];
+        channels(&scene, "soft-shadow-volumes", &set)
+    };
+    let (eight, sixteen) = (of("texture-bits=8"), of("texture-bits=16"));
+    for (channel, (a, b)) in eight.iter().zip(&sixteen).enumerate() {
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        let worst = off.filter(|d| !d.is_nan()).fold(0.0, f32::max);
+        assert!(worst < 0.01, "{channel}: {worst}");
+        assert!(a.iter().any(|v| *v < 0.1), "{channel}");
     }
 }
 

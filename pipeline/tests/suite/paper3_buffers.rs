@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use crate::drawing::drawn;
+use crate::soft_shaders::{COUNT, full_screen, gpu, red as red_of, submit, texture};
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::technique::{DrawRole, Params, PassRole};
 use gnomon_pipeline::techniques::find;
@@ -14,6 +15,8 @@ use gnomon_pipeline::world::mesh::Shading;
 use gnomon_pipeline::world::scene::{Camera, Material, Object, Scene, builtin};
 use gnomon_pipeline::world::shape;
 use gnomon_raster::state::ColorTargetState;
+use gnomon_raster::{Format, LoadOp, Subresource};
+use gnomon_shaders::visibility_buffers::ResolveRedGreen;
 
 const SIZE: [u32; 2] = [120, 80];
 const NAME: &str = "soft-shadow-volumes";
@@ -72,7 +75,8 @@ fn the_umbra_is_in_the_stencil_and_coverage_in_one_texture() {
     assert!(wedges[0].fragment_shader_invocations > 0);
     let [float, bytes] = [&[][..], &["buffer=rgba8"]].map(|set| {
         let technique = find(NAME).unwrap();
-        let params = Params::parse(technique, set).unwrap();
+        let published = ["horizon=off"];
+        let params = Params::parse(technique, published.iter().chain(set)).unwrap();
         let frame = technique.frame(&scene, SIZE, &params).unwrap();
         frame
             .recording
@@ -112,7 +116,7 @@ fn counting_by_depth_is_counting_by_sides() {
 fn copying_back_blends_nothing_and_takes_four_passes_a_wedge() {
     let scene = builtin::build("cylinder").unwrap();
     let technique = find(NAME).unwrap();
-    let params = Params::parse(technique, ["copy-back=on", "wedge=paper3"]).unwrap();
+    let params = Params::parse(technique, ["horizon=off", "copy-back=on", "wedge=paper3"]).unwrap();
     let frame = technique.frame(&scene, SIZE, &params).unwrap();
     let (mut passes, mut wedges) = (0, 0);
     for (number, pass) in frame.recording.list.passes.iter().enumerate() {
@@ -247,4 +251,77 @@ fn wedges_of_a_tiny_light_leave_the_hard_shadow() {
     let (off, all) = apart(&soft, &hard, 0.0);
     println!("{off} of {all}, {wedges} invocations");
     assert!(all > 4000 && off <= 12, "{off} of {all}");
+}
+
+/// The resolve of red, green and the stencil, by hand: visibility where positions say that
+/// shadow may fall, or may not.
+fn resolved(stencil: u8, red_green: [f32; 2], shadowable: f32) -> f32 {
+    let mut gpu = gpu();
+    let image = Subresource::default();
+    let [both, positions] = [Format::Rgba8Unorm, Format::Rgba32Float].map(|f| texture(&mut gpu, f));
+    let [depth_stencil, out] =
+        [Format::Depth24Stencil8, Format::R32Float].map(|f| texture(&mut gpu, f));
+    let [red, green] = red_green.map(|c| c / 255.0);
+    let mut fill = |to, texel: [f32; 4]| {
+        let target = gpu.texture_mut(to).unwrap();
+        target.write_color(image, &[texel; COUNT]).unwrap();
+    };
+    fill(both, [red, green, 0.0, 0.0]);
+    fill(positions, [0.0, 0.0, 0.0, shadowable]);
+    let target = gpu.texture_mut(depth_stencil).unwrap();
+    let (depths, counts) = (vec![1.0; COUNT], vec![stencil; COUNT]);
+    target.write_depth_stencil(image, &depths, &counts).unwrap();
+    let sources = [both, positions, depth_stencil];
+    let draw = full_screen(ResolveRedGreen.stage(), ColorTargetState::OPAQUE, &sources);
+    submit(&mut gpu, out, LoadOp::DontCare, vec![draw]);
+    red_of(&gpu, out)[0]
+}
+
+/// Quads that meet may round to one leaving more than entered: 255 in the stencil is -1,
+/// and not 255 layers.
+#[test]
+fn counts_below_zero_make_up_for_coverage_that_is_taken() {
+    assert_eq!(resolved(0, [0.0, 63.0], 1.0), 0.0);
+    assert_eq!(resolved(255, [0.0, 63.0], 1.0), 1.0);
+    assert_eq!(resolved(3, [126.0, 0.0], 1.0), 0.0);
+    assert_eq!(resolved(127, [0.0, 0.0], 1.0), -126.0);
+    assert_eq!(resolved(128, [0.0, 0.0], 1.0), 129.0);
+}
+
+#[test]
+fn what_takes_no_shadow_is_lit_whatever_was_counted() {
+    assert_eq!(resolved(1, [0.0, 0.0], 1.0), 0.0);
+    assert_eq!(resolved(1, [0.0, 0.0], 0.0), 1.0);
+    assert_eq!(resolved(7, [0.0, 63.0], 0.0), 1.0);
+}
+
+/// The eye is in a plate, and the near plane cuts away the lit face above it, by which all
+/// rays leave: what is beyond is lit, whatever counts.
+#[test]
+fn lit_faces_that_the_near_plane_cuts_away_are_left_in_the_stencil_too() {
+    let solid = |name: &str, shape: shape::Shape| {
+        let mesh = shape.into_mesh(Shading::Flat).unwrap();
+        Object::new(name, mesh, Material::matt([0.7; 3]))
+    };
+    let plate = shape::cuboid(DVec3::new(0.0, 0.6, 0.0), DVec3::new(3.0, 0.1, 3.0));
+    let wall = shape::cuboid(DVec3::new(0.0, 2.0, -4.0), DVec3::new(8.0, 6.0, 0.2));
+    let light = Light {
+        shape: LightShape::Sphere {
+            centre: DVec3::new(0.5, 6.0, 1.0),
+            radius: 0.4,
+        },
+        colour: [1.0; 3],
+    };
+    let mut camera = Camera::look_at([0.0, 0.6, 0.0], [0.0, 2.2, -4.0]);
+    camera.near = 0.5;
+    let objects = vec![solid("plate", plate), solid("wall", wall).receiver_only()];
+    let scene = Scene::new(camera, vec![light], objects);
+    for buffer in ["buffer=r32f", "buffer=rgba8x2", "buffer=rgba8"] {
+        let done = draw(&scene, &[buffer]);
+        let lit = done.visibility.iter().filter(|v| **v > 0.9).count();
+        assert!(2 * lit > done.visibility.len(), "{buffer}: {lit}");
+        let caps = done.report.passes.iter().flat_map(|p| &p.draws);
+        let caps = caps.filter(|d| d.label.starts_with("near caps"));
+        assert!(caps.count() > 0, "{buffer}");
+    }
 }

@@ -161,7 +161,7 @@ fn rectangle(x: f64, z: f64, bright: f32) -> Light {
     lamp(shape, bright)
 }
 
-fn scenes() -> Vec<Scene> {
+pub(crate) fn scenes() -> Vec<Scene> {
     let ball = lamp(
         LightShape::Sphere {
             centre: DVec3::new(0.8, 3.6, 0.6),
@@ -184,7 +184,7 @@ fn scenes() -> Vec<Scene> {
 }
 
 /// Three objects under an environment.
-fn under_sky() -> Scene {
+pub(crate) fn under_sky() -> Scene {
     let mut scene = scene(Vec::new(), two_boxes());
     let mut request = EnvironmentRequest::new("sky");
     request.settings.side = 8;
@@ -249,6 +249,20 @@ fn samples(info: &ParamInfo, now: &str) -> Vec<String> {
     all
 }
 
+/// Cheap settings of a technique.
+pub(crate) fn base(technique: &dyn Technique) -> Vec<String> {
+    let has = |key: &str| technique.params().iter().any(|p| p.name == key);
+    let mut base: Vec<(&str, &str)> = CHEAP.into_iter().filter(|(k, _)| has(k)).collect();
+    let name = technique.name();
+    if name.starts_with("sampled") || ["ray-traced", "heckbert-herf"].contains(&name) {
+        base.push(("samples", "4"));
+    }
+    if name == DEFERRED {
+        base.extend([("map-size", "16"), ("directions", "64"), ("lights", "4")]);
+    }
+    base.iter().map(|(k, v)| format!("{k}={v}")).collect()
+}
+
 /// A technique with cheap settings, and what it draws with others.
 struct Matrix<'a> {
     technique: &'static dyn Technique,
@@ -259,19 +273,6 @@ struct Matrix<'a> {
 }
 
 impl Matrix<'_> {
-    fn base(&self) -> Vec<String> {
-        let has = |key: &str| self.technique.params().iter().any(|p| p.name == key);
-        let mut base: Vec<(&str, &str)> = CHEAP.into_iter().filter(|(k, _)| has(k)).collect();
-        let name = self.technique.name();
-        if name.starts_with("sampled") || ["ray-traced", "heckbert-herf"].contains(&name) {
-            base.push(("samples", "4"));
-        }
-        if self.technique.name() == DEFERRED {
-            base.extend([("map-size", "16"), ("directions", "64"), ("lights", "4")]);
-        }
-        base.iter().map(|(k, v)| format!("{k}={v}")).collect()
-    }
-
     fn draw(&mut self, scene: usize, set: &[String]) -> &Result<Print, String> {
         let key = (scene, set.to_vec());
         let (technique, scenes) = (self.technique, self.scenes);
@@ -345,7 +346,7 @@ impl Matrix<'_> {
 
     fn all_pairs(&mut self) {
         let params = self.technique.params();
-        let base = self.base();
+        let base = base(self.technique);
         for x in params {
             self.check(x, &base);
             for y in params.iter().filter(|y| y.name != x.name) {
@@ -391,34 +392,38 @@ fn check(names: &[&str]) {
     assert!(wrong.is_empty(), "settings:\n{}", wrong.join("\n"));
 }
 
-const VOLUMES: [&str; 3] = ["unshadowed", "shadow-volumes", "sampled-shadow-volumes"];
-const WEDGES: [&str; 2] = ["penumbra-wedges", "penumbra-wedges-restructured"];
-const SOFT: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
-const MAPS: [&str; 4] = ["shadow-map", "pcf", "pcss", "shadow-maps-n"];
-const MOMENTS: [&str; 4] = ["vsm", "evsm", "msm", "vssm"];
-const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
-const RAYS: [&str; 1] = ["ray-traced"];
-const BACKPROJECTED: [&str; 2] = ["backprojection", "bitmask"];
-const DEFERRED: &str = "deferred-shadowing";
-const CONES: [&str; 2] = ["cone-culling", "smoothies"];
-const OTHERS: [&str; 2] = ["convolution-soft-shadows", "mixed-lights"];
+pub(crate) const VOLUMES: [&str; 3] = ["unshadowed", "shadow-volumes", "sampled-shadow-volumes"];
+pub(crate) const WEDGES: [&str; 2] = ["penumbra-wedges", "penumbra-wedges-restructured"];
+pub(crate) const SOFT: [&str; 2] = ["soft-shadow-volumes", "soft-shadow-volumes-optimised"];
+pub(crate) const LINES: [&str; 1] = ["line-sampled-shadow-volumes"];
+pub(crate) const MAPS: [&str; 4] = ["shadow-map", "pcf", "pcss", "shadow-maps-n"];
+pub(crate) const MOMENTS: [&str; 4] = ["vsm", "evsm", "msm", "vssm"];
+pub(crate) const PLANAR: [&str; 2] = ["soler-sillion", "heckbert-herf"];
+pub(crate) const RAYS: [&str; 1] = ["ray-traced"];
+pub(crate) const BACKPROJECTED: [&str; 2] = ["backprojection", "bitmask"];
+pub(crate) const DEFERRED: &str = "deferred-shadowing";
+pub(crate) const CONES: [&str; 2] = ["cone-culling", "smoothies"];
+pub(crate) const OTHERS: [&str; 2] = ["convolution-soft-shadows", "mixed-lights"];
+
+/// All of them.
+pub(crate) const ALL: [&[&str]; 12] = [
+    &VOLUMES,
+    &WEDGES,
+    &SOFT,
+    &LINES,
+    &MAPS,
+    &MOMENTS,
+    &BACKPROJECTED,
+    &RAYS,
+    &PLANAR,
+    &CONES,
+    &OTHERS,
+    &[DEFERRED],
+];
 
 #[test]
 fn no_technique_is_left_out() {
-    let checked = [
-        &VOLUMES[..],
-        &WEDGES,
-        &SOFT,
-        &MAPS,
-        &MOMENTS,
-        &BACKPROJECTED,
-        &RAYS,
-        &PLANAR,
-        &CONES,
-        &OTHERS,
-        &[DEFERRED],
-    ]
-    .concat();
+    let checked = ALL.concat();
     for technique in techniques::all() {
         assert!(checked.contains(&technique.name()), "{}", technique.name());
     }
@@ -437,6 +442,11 @@ fn settings_of_linked_wedges_act_or_are_warned_of() {
 #[test]
 fn settings_of_soft_volumes_act_or_are_warned_of() {
     check(&SOFT);
+}
+
+#[test]
+fn settings_of_lines_act_or_are_warned_of() {
+    check(&LINES);
 }
 
 #[test]

@@ -83,6 +83,41 @@ fn one_map_is_the_hard_shadow_away_from_edges() {
     }
 }
 
+/// Kernels lie about the receiver, not beside it: the centroid of a shadow of a plate
+/// right below the light is below it too, to a quarter of a texel; what is left is the
+/// picture's pixels.
+#[test]
+fn kernels_do_not_move_shadows() {
+    const D: f64 = 4.0;
+    let (scene, _) = plates(D);
+    let rays = scene.camera.eye_rays(SIZE[0], SIZE[1]);
+    for kernel in [
+        &["kernel=bicubic"][..],
+        &["kernel=box", "taps=4"],
+        &["kernel=box", "taps=5"],
+    ] {
+        let set = [kernel, &["map-size=64", "fit=receivers"]].concat();
+        let picture = by("pcf", &scene, &set);
+        let (mut sum, mut dark) = (DVec3::ZERO, 0.0);
+        for (k, seen) in picture.visibility.iter().enumerate() {
+            let place = [k as u32 % SIZE[0], k as u32 / SIZE[0]].map(|c| f64::from(c) + 0.5);
+            let ray = rays.direction(place[0], place[1]);
+            let t = -rays.origin.y / ray.y;
+            // What a pixel covers of the floor grows with the cube of its distance.
+            let hidden = (1.0 - f64::from(*seen)) * t * t * t;
+            sum += (rays.origin + ray * t) * hidden;
+            dark += hidden;
+        }
+        let texel = figure(&picture, "texel");
+        let off = sum / dark / texel;
+        println!("{kernel:?}: texel {texel:.4}, off by {off:.3}");
+        assert!(
+            dark > 0.0 && off.x.abs() < 0.25 && off.z.abs() < 0.25,
+            "{kernel:?}: {off}"
+        );
+    }
+}
+
 /// Whether a shadow map of parallel rays that is right in every texel says so; as
 /// [`mapped`].
 fn mapped_along(
@@ -260,6 +295,33 @@ fn one_tap_is_the_shadow_map_to_the_bit() {
         assert_eq!(hard.visibility_hash(), one.visibility_hash(), "{name}");
         let soft = by("pcf", &scene, &["kernel=bicubic", "bias=0.01"]);
         assert_ne!(hard.visibility_hash(), soft.visibility_hash(), "{name}");
+    }
+}
+
+/// A smooth kernel blurs a shadow and does not move it: its centroid is that of single
+/// texels, to a tenth of a pixel, where half a texel is half a pixel and more.
+#[test]
+fn bicubic_kernels_are_centred_on_the_receiver() {
+    let scene = scene("parallel-plates");
+    let centroid = |set: &[&str]| {
+        let picture = by("pcf", &scene, set);
+        let (mut sum, mut moments) = (0.0, [0.0; 2]);
+        for (i, v) in picture.visibility.iter().enumerate() {
+            let dark = if v.is_nan() { 0.0 } else { 1.0 - f64::from(*v) };
+            let (x, y) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+            sum += dark;
+            moments = [
+                moments[0] + dark * f64::from(x),
+                moments[1] + dark * f64::from(y),
+            ];
+        }
+        moments.map(|m| m / sum)
+    };
+    let [bicubic, single] =
+        ["kernel=bicubic", "taps=1"].map(|kernel| centroid(&[kernel, "map-size=16", "bias=0.01"]));
+    for k in 0..2 {
+        let off = bicubic[k] - single[k];
+        assert!(off.abs() < 0.25, "{bicubic:?} {single:?}");
     }
 }
 

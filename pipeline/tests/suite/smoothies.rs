@@ -1,5 +1,6 @@
 //! Smoothies (Chan and Durand 2003): order, umbrae, widths, roughness of edges and cost.
 
+use crate::drawing::as_published;
 use std::sync::Arc;
 
 use crate::map_support::{figure, plates, sized};
@@ -32,6 +33,9 @@ fn solid(name: &str, shape: Shape) -> Object {
 /// blending or without: the visibility that it leaves.
 fn in_order(scene: &Scene, set: &[&str], reversed: bool, blended: bool) -> Vec<f32> {
     let technique = find("smoothies").unwrap();
+    let set = as_published(technique)
+        .into_iter()
+        .chain(set.iter().copied());
     let params = Params::parse(technique, set).unwrap();
     let mut frame = technique.frame(scene, SIZE, &params).unwrap();
     let roles = frame.roles.passes().to_vec();

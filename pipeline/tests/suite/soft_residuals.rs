@@ -5,6 +5,7 @@
 //! The sum over triangles is what adding silhouette edges comes to (docs/papers.md, paper
 //! III), without silhouettes, wedges, planes or buffers: see [`Causes`].
 
+use crate::drawing::as_published;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -41,7 +42,7 @@ fn tally(scene: &Scene, summed: &Scene) -> Tally {
         size: SIZE,
         ..RenderSettings::default()
     };
-    let params = Params::defaults(technique);
+    let params = Params::parse(technique, as_published(technique)).unwrap();
     let done = render(scene, technique, &params, &settings).unwrap();
     let truth = Reference::new(scene, 0, SIZE, ReferenceKind::Exact, None, &|| ()).unwrap();
     // Without pixels that show another surface than the oracle's ray meets.

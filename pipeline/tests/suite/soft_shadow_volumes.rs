@@ -402,7 +402,7 @@ fn what_is_behind_a_spheres_horizon_hides_nothing() {
         let mesh = shape.into_mesh(Shading::Flat).unwrap();
         Object::new("solid", mesh, Material::matt([0.7; 3]))
     };
-    let seen = |nearer: f64| {
+    let seen = |nearer: f64, set: &[&str]| {
         let (centre, size) = (DVec3::new(1.01, 1.2, 0.0), DVec3::new(0.06, 0.04, 0.2));
         let the_box = shape::cuboid(centre * nearer, size * nearer);
         let floor = solid(shape::plane(4.0, 0.0)).receiver_only();
@@ -416,12 +416,15 @@ fn what_is_behind_a_spheres_horizon_hides_nothing() {
         // Looks at the point below, from under the box.
         let camera = Camera::look_at([-2.0, 0.3, 0.4], [0.0, 0.0, 0.0]);
         let scene = Scene::new(camera, vec![light], vec![floor, solid(the_box)]);
-        let done = soft(&scene, &[]);
+        let done = soft(&scene, set);
         done.visibility[(SIZE[0] * (SIZE[1] / 2) + SIZE[0] / 2) as usize]
     };
-    let (behind, before) = (seen(1.0), seen(0.5));
-    println!("{behind} {before}");
-    assert!(behind > 0.999_99 && before < 0.999_5, "{behind} {before}");
+    // Depth keeps the shader away from most of what is behind; it has to know without.
+    for set in [&[][..], &["skip=off"], &["skip=off", "wedge=paper3"]] {
+        let (behind, before) = (seen(1.0, set), seen(0.5, set));
+        println!("{set:?}: {behind} {before}");
+        assert!(behind > 0.999_99 && before < 0.999_5, "{behind} {before}");
+    }
 }
 
 /// Next to the hard edge, where ends come near the light's centre, linear look-ups are
@@ -449,7 +452,13 @@ fn quadlinear_look_ups_do_not_speckle() {
                 linear.0 < nearest.0,
                 "{name} {centred}: {linear:?} {nearest:?}"
             );
-            assert!(linear.1 < 0.25, "{name} {centred}: {linear:?} {nearest:?}");
+            // Creature has edges that pass the centre in pieces; the plate's four do not.
+            let most = if name == "parallel-plates" {
+                0.08
+            } else {
+                0.25
+            };
+            assert!(linear.1 < most, "{name} {centred}: {linear:?} {nearest:?}");
         }
     }
 }

@@ -2,9 +2,10 @@
 //! visibility outside 0..=1, no saturation that nothing tells of, and skipping that
 //! stays invisible.
 //!
-//! Hundreds of small frames; how errors grow with scale and offset is measured by
-//! the example `breakdown`.
+//! Hundreds of small frames; how errors grow is measured by `gnomon stress` and held by
+//! the module `stress`.
 
+use crate::drawing::as_published;
 use glam::DVec3;
 use gnomon_pipeline::geometry::area_light::AreaLight;
 use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
@@ -30,7 +31,8 @@ fn picture(scene: &Scene, technique: &dyn Technique, more: &[&str]) -> Option<Re
     if has("samples") {
         set.push("samples=16");
     }
-    let params = Params::parse(technique, set).unwrap();
+    let published = as_published(technique).into_iter();
+    let params = Params::parse(technique, published.chain(set)).unwrap();
     let settings = RenderSettings {
         size: SIZE,
         ..RenderSettings::default()

@@ -13,7 +13,7 @@ const OPTIMISED: &str = "soft-shadow-volumes-optimised";
 
 fn frame(scene: &Scene, set: &[&str]) -> Frame {
     let technique = find(OPTIMISED).unwrap();
-    let params = Params::parse(technique, set).unwrap();
+    let params = Params::parse(technique, ["horizon=off"].iter().chain(set)).unwrap();
     technique.frame(scene, SIZE, &params).unwrap()
 }
 

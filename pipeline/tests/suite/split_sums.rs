@@ -2,7 +2,9 @@
 //! combined: the shader's own splitting and resolving, drawn over the screen of a small
 //! GPU.
 
+use crate::drawing::drawn;
 use crate::soft_shaders::{COUNT, Random, SIDE, full_screen, gpu, red, submit, texture};
+use gnomon_pipeline::world::scene::builtin;
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader, FragmentStage};
 use gnomon_raster::state::ColorTargetState;
 use gnomon_raster::{Format, Gpu, I32, Lanes, LoadOp, Subresource, TextureId};
@@ -263,5 +265,22 @@ fn parts_add_up_exactly() {
         let [high, low] = [texel.0[0], texel.0[1]].map(|c| f64::from(c * 255.0).round());
         let mean = sum as f64 / 64.0;
         assert_eq!(high * 256.0 + low, mean.round_ties_even());
+    }
+}
+
+/// Where all surfaces face the light, limiting visibility by what they see of it, in floats,
+/// leaves what bytes hold: the mean of the parts.
+#[test]
+fn parts_in_a_float_are_the_mean_that_bytes_hold() {
+    let scene = builtin::build("parallel-plates").unwrap();
+    for split in ["split=1", "split=2", "split=3"] {
+        let [bytes, float] = ["horizon=off", "horizon=on"].map(|horizon| {
+            let set = [split, horizon];
+            drawn(&scene, "soft-shadow-volumes-optimised", &set, [60, 40]).visibility
+        });
+        let seen = || bytes.iter().zip(&float).filter(|(b, _)| b.is_finite());
+        let most = seen().map(|(b, f)| (b - f).abs()).fold(0.0, f32::max);
+        assert!(most <= 1.0 / UNITS, "{split}: {most}");
+        assert!(seen().any(|(b, _)| *b < 0.5), "{split}");
     }
 }

@@ -216,6 +216,23 @@ fn acute_vertices_get_up_to_six_extra_wedges() {
     assert_eq!(linked(&hole, 0.3).1.extra_wedges, 0);
 }
 
+/// Round a vertex they lead from one edge to the next in equal steps: 24.6 degrees where
+/// the corner is of 7.6.
+#[test]
+fn extra_wedges_turn_from_one_edge_to_the_next() {
+    let (wedges, _) = linked(&acute(), 0.3);
+    let mut extra = 0;
+    for (k, wedge) in wedges.iter().enumerate() {
+        let next = &wedges[(k + 1) % wedges.len()];
+        let turn = wedge.front.normal.dot(next.front.normal).clamp(-1.0, 1.0);
+        let degrees = libm::acos(turn).to_degrees();
+        let around = wedge.edge[0] == wedge.edge[1] || next.edge[0] == next.edge[1];
+        extra += usize::from(around);
+        assert!(!around || degrees < 60.0, "{k}: {degrees}");
+    }
+    assert!(extra >= 9, "{extra}");
+}
+
 #[test]
 fn edges_along_the_light_are_collapsed_and_counted() {
     let mut points = acute();

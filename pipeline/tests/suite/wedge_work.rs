@@ -1,6 +1,7 @@
 //! Only pixels inside penumbrae run the penumbra shader: shaded fragments over
 //! (penumbra pixels x covering wedges), against a count in f64.
 
+use crate::drawing::as_published;
 use gnomon_pipeline::geometry::area_light::AreaLight;
 use gnomon_pipeline::geometry::silhouette::{Orientation, Silhouette, light_facing};
 use gnomon_pipeline::geometry::wedge::{Construction, Wedge, WedgeStatistics};
@@ -16,7 +17,8 @@ const SIZE: [u32; 2] = [240, 160];
 
 fn work(name: &str, scene: &Scene, set: &[&str]) -> WedgeWork {
     let technique = find(name).unwrap();
-    let params = Params::parse(technique, set).unwrap();
+    let published = as_published(technique).into_iter();
+    let params = Params::parse(technique, published.chain(set.iter().copied())).unwrap();
     let settings = RenderSettings {
         size: SIZE,
         ..RenderSettings::default()

@@ -317,6 +317,12 @@ impl<'a, L: Lanes> Fragment<'a, L> {
         }
     }
 
+    /// Column and row of the 8×8 block of pixels that the packet lies in.
+    #[cfg_attr(not(gnomon_unoptimised), inline(always))]
+    pub fn block(&self) -> [u32; 2] {
+        [self.x / 8, self.y / 8]
+    }
+
     /// Integer pixel column of each lane.
     #[cfg_attr(not(gnomon_unoptimised), inline(always))]
     pub fn column(&self) -> I32<L> {

@@ -129,8 +129,11 @@ pub(crate) fn check_packed(
     }
 }
 
-// Plain loops over numbers, and closures that are inlined without fail: iterators and
-// `copy_from_slice` can stay calls for each texel.
+/// Pixels of a row of a block.
+const SIDE: usize = BLOCK as usize;
+
+// Plain loops over arrays of known size, in closures that are inlined without fail: a row of
+// a block becomes a few instructions on whole registers.
 
 fn read_color(blocks: &ColorBlocks, layout: &Layout, to: &mut impl FnMut(&[u8])) {
     match blocks {
@@ -138,40 +141,50 @@ fn read_color(blocks: &ColorBlocks, layout: &Layout, to: &mut impl FnMut(&[u8]))
             layout,
             to,
             #[inline(always)]
-            |b, i| v[b].0[i].to_le_bytes(),
+            |b, y| each(row(&v[b].0, y), u8::to_le_bytes),
         ),
         ColorBlocks::B16(v) => read_rows(
             layout,
             to,
             #[inline(always)]
-            |b, i| v[b].0[i].to_le_bytes(),
+            |b, y| each(row(&v[b].0, y), u16::to_le_bytes),
         ),
         ColorBlocks::B32(v) => read_rows(
             layout,
             to,
             #[inline(always)]
-            |b, i| v[b].0[i].to_le_bytes(),
+            |b, y| each(row(&v[b].0, y), u32::to_le_bytes),
         ),
         ColorBlocks::B16x4(v) => read_rows(
             layout,
             to,
             #[inline(always)]
-            |b, i| {
-                let c = &v[b].0;
-                let [c0, c1, c2, c3] = [c[0][i], c[1][i], c[2][i], c[3][i]];
-                let low = u64::from(c0) | u64::from(c1) << 16;
-                (low | u64::from(c2) << 32 | u64::from(c3) << 48).to_le_bytes()
+            |b, y| {
+                let [r, g, b, a] = &v[b].0;
+                let [r, g, b, a] = [row(r, y), row(g, y), row(b, y), row(a, y)];
+                let mut bytes = [[0; 8]; SIDE];
+                for i in 0..SIDE {
+                    let low = u64::from(r[i]) | u64::from(g[i]) << 16;
+                    let texel = low | u64::from(b[i]) << 32 | u64::from(a[i]) << 48;
+                    bytes[i] = texel.to_le_bytes();
+                }
+                bytes
             },
         ),
         ColorBlocks::B32x4(v) => read_rows(
             layout,
             to,
             #[inline(always)]
-            |b, i| {
-                let c = &v[b].0;
-                let [c0, c1, c2, c3] = [c[0][i], c[1][i], c[2][i], c[3][i]];
-                let low = u128::from(c0) | u128::from(c1) << 32;
-                (low | u128::from(c2) << 64 | u128::from(c3) << 96).to_le_bytes()
+            |b, y| {
+                let [r, g, b, a] = &v[b].0;
+                let [r, g, b, a] = [row(r, y), row(g, y), row(b, y), row(a, y)];
+                let mut bytes = [[0; 16]; SIDE];
+                for i in 0..SIDE {
+                    let low = u128::from(r[i]) | u128::from(g[i]) << 32;
+                    let texel = low | u128::from(b[i]) << 64 | u128::from(a[i]) << 96;
+                    bytes[i] = texel.to_le_bytes();
+                }
+                bytes
             },
         ),
     }
@@ -183,47 +196,81 @@ fn read_depth(plane: &DepthPlane, format: Format, layout: &Layout, to: &mut impl
             layout,
             to,
             #[inline(always)]
-            |b, i| {
-                let [low, middle, high, _] = plane.depth[b].0[i].to_le_bytes();
-                [low, middle, high]
-            },
+            |b, y| three_bytes(row(&plane.depth[b].0, y)),
         ),
         _ => read_rows(
             layout,
             to,
             #[inline(always)]
-            |b, i| plane.depth[b].0[i].to_le_bytes(),
+            |b, y| each(row(&plane.depth[b].0, y), u32::to_le_bytes),
         ),
     }
     read_rows(
         layout,
         to,
         #[inline(always)]
-        |b, i| [plane.stencil[b].0[i]],
+        |b, y| each(row(&plane.stencil[b].0, y), u8::to_le_bytes),
     );
 }
 
-/// Shows the texels of an image row by row; `texel` gives the bytes of a pixel of a block.
+/// Row `y` of a block.
+#[inline(always)]
+fn row<T>(block: &[T; SIDE * SIDE], y: usize) -> &[T; SIDE] {
+    &block.as_chunks().0[y]
+}
+
+#[inline(always)]
+fn each<T: Copy, const N: usize>(row: &[T; SIDE], bytes: impl Fn(T) -> [u8; N]) -> [[u8; N]; SIDE] {
+    let mut all = [[0; N]; SIDE];
+    for i in 0..SIDE {
+        all[i] = bytes(row[i]);
+    }
+    all
+}
+
+/// The low three bytes of each word: eight words are three of twice the size.
+#[inline(always)]
+fn three_bytes(words: &[u32; SIDE]) -> [[u8; 3]; SIDE] {
+    let mut w = [0; SIDE];
+    for i in 0..SIDE {
+        w[i] = u64::from(words[i] & 0xff_ffff);
+    }
+    let wide = [
+        w[0] | w[1] << 24 | w[2] << 48,
+        w[2] >> 16 | w[3] << 8 | w[4] << 32 | w[5] << 56,
+        w[5] >> 8 | w[6] << 16 | w[7] << 40,
+    ];
+    let mut bytes = [[0; 3]; SIDE];
+    let all = bytes.as_flattened_mut().as_chunks_mut::<8>().0;
+    for i in 0..wide.len() {
+        all[i] = wide[i].to_le_bytes();
+    }
+    bytes
+}
+
+/// Shows the texels of an image row by row; `texels` gives the bytes of row `y` of a block.
+/// All of a block is read at once: blocks lie far apart, so that its rows would be misses of
+/// the cache one by one.
 #[inline(always)]
 fn read_rows<const N: usize>(
     layout: &Layout,
     visit: &mut impl FnMut(&[u8]),
-    texel: impl Fn(usize, usize) -> [u8; N],
+    texels: impl Fn(usize, usize) -> [[u8; N]; SIDE],
 ) {
-    const SIDE: usize = BLOCK as usize;
     let blocks = layout.width.div_ceil(BLOCK) as usize;
-    let mut row = vec![[[0; N]; SIDE]; blocks];
-    for y in 0..layout.height {
-        let first = SIDE * (y as usize % SIDE);
+    let mut rows = vec![[[0; N]; SIDE]; SIDE * blocks];
+    for y in 0..layout.height.div_ceil(BLOCK) {
         for x in 0..blocks {
-            let block = layout.block_index(x as u32, y / BLOCK);
-            let to = &mut row[x];
-            for i in 0..SIDE {
-                to[i] = texel(block, first + i);
+            let block = layout.block_index(x as u32, y);
+            for r in 0..SIDE {
+                rows[r * blocks + x] = texels(block, r);
             }
         }
-        let row = &row.as_flattened()[..layout.width as usize];
-        visit(row.as_flattened());
+        let shown = (layout.height - y * BLOCK).min(BLOCK) as usize;
+        for row in rows.chunks_exact(blocks).take(shown) {
+            let row = &row.as_flattened()[..layout.width as usize];
+            visit(row.as_flattened());
+        }
     }
 }
 
@@ -242,5 +289,62 @@ fn write_depth(plane: &mut DepthPlane, format: Format, layout: &Layout, bytes: &
         plane.depth[block].0[pixel] = integer(depth);
         plane.stencil[block].0[pixel] = *stencil;
         [plane.hiz.min[block], plane.hiz.max[block]] = HIZ_STALE;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// xorshift.
+    fn bytes(count: usize) -> Vec<u8> {
+        let mut x = 0x9e37_79b9_u32;
+        let mut next = || {
+            x ^= x << 13;
+            x ^= x >> 17;
+            x ^= x << 5;
+            x as u8
+        };
+        (0..count).map(|_| next()).collect()
+    }
+
+    /// Whatever goes by rows of blocks is what single texels are.
+    #[test]
+    fn rows_are_their_texels_in_every_format_and_size() {
+        let image = Subresource::default();
+        for format in Format::ALL {
+            for [width, height] in [[1, 1], [8, 8], [13, 9], [31, 17], [64, 3]] {
+                let desc = TextureDescriptor::d2("t", format, width, height);
+                let mut texture = Texture::new(&desc).unwrap();
+                let mut given = bytes(packed_len(&desc, image).unwrap());
+                if format == Format::Depth32FloatStencil8 {
+                    // Depths are of 0..=1.
+                    let depths = given.len() / 5 * 4;
+                    given[3..depths]
+                        .iter_mut()
+                        .step_by(4)
+                        .for_each(|b| *b = 0x3e);
+                }
+                texture.write_packed(image, &given).unwrap();
+                assert_eq!(
+                    texture.read_packed(image).unwrap(),
+                    given,
+                    "{format:?} {width}"
+                );
+                let mut texels = Vec::new();
+                if format.is_depth_stencil() {
+                    let depths = texture.read_depth_bits(image).unwrap();
+                    let each = format.bytes() as usize;
+                    depths
+                        .iter()
+                        .for_each(|d| texels.extend(&d.to_le_bytes()[..each]));
+                    texels.extend(texture.read_stencil(image).unwrap());
+                } else {
+                    let raw = texture.read_raw(image).unwrap();
+                    raw.iter().for_each(|t| pack(format, *t, &mut texels));
+                }
+                assert_eq!(texels, given, "{format:?} {width}");
+            }
+        }
     }
 }

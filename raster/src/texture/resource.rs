@@ -111,6 +111,24 @@ impl Texture {
         })
     }
 
+    /// A texel of a plain image of four floats, zero outside; `None` for others, and where
+    /// a number is none: those have their canonical bits.
+    #[inline]
+    pub(crate) fn plain_texel(&self, [x, y]: [u32; 2]) -> Option<[f32; 4]> {
+        let [w, h, _] = self.desc.size;
+        let plain = self.desc.dimension == TextureDimension::D2;
+        if !plain || self.desc.format != Format::Rgba32Float || x >= w || y >= h {
+            return None;
+        }
+        let Some(Plane::Color(ColorBlocks::B32x4(blocks))) = self.planes[0].first() else {
+            return None;
+        };
+        let (block, place) = self.layouts[0].locate(x, y);
+        let [r, g, b, a] = &blocks[block].0;
+        let texel = [r[place], g[place], b[place], a[place]].map(f32::from_bits);
+        (!texel.iter().any(|c| c.is_nan())).then_some(texel)
+    }
+
     /// What it was created from.
     #[must_use]
     pub fn descriptor(&self) -> &TextureDescriptor {

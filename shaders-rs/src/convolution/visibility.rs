@@ -7,8 +7,10 @@ use gnomon_raster::{F32, Lanes, uniforms};
 
 use super::look_up::{Images, Prefiltered, Rectangle};
 use super::{Expansion, MAX_TERMS};
-use crate::light_view::LightMapping;
+use crate::light_view::{LightMapping, Projection};
+use crate::shadow_maps::ReceiverPlanes;
 use crate::soft_volumes::own_texels;
+use crate::vector::each2;
 
 /// `s^p, p = 1 + strength · exp(−falloff · (d − z_avg))` (Eq. 9), depths 0..=1 over
 /// the light view's range. Strength 0 leaves visibility as it is.
@@ -21,6 +23,31 @@ pub struct Sharpening {
 }
 uniforms!(Sharpening { strength, falloff });
 
+/// A steep receiver is nearer to the light over half of its kernel, and shadows itself
+/// there. So its depth is lessened by a share of the depth that its plane gains over
+/// half a kernel's width: `share · ∑ |slope| · half width`, and no more than `most`, since
+/// the series has a period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneOffset {
+    /// How planes are seen in the view; they are in texture 4.
+    pub planes: ReceiverPlanes,
+    /// Share for kernels that look for the average depth.
+    pub first: f32,
+    /// Share for the last kernel.
+    pub last: f32,
+    /// Largest offset, depths being 0..=1 over the light view.
+    pub most: f32,
+}
+uniforms!(PlaneOffset {
+    planes,
+    first,
+    last,
+    most
+});
+
+/// Slot of the receivers' planes.
+const PLANES: usize = 4;
+
 /// Name of the count of fragments whose 1 − s is below the threshold, and which are
 /// lit for that.
 pub const BELOW_THRESHOLD: &str = "lit-below-threshold";
@@ -28,7 +55,7 @@ pub const BELOW_THRESHOLD: &str = "lit-below-threshold";
 /// Visibility of a rectangular light, to red of attachment 0.
 ///
 /// Texture 0 holds positions (w is 0 where no shadow falls); slots of the images are
-/// theirs. A fragment is discarded before any other look-up where nothing can be in
+/// theirs, and planes, where they are looked at, are in slot 4. A fragment is discarded before any other look-up where nothing can be in
 /// the light's way: no shadow falls there, it is not beyond the view's near distance,
 /// or all of its first kernel is outside the view. It is discarded before the last
 /// look-ups, and counted as [`BELOW_THRESHOLD`], where 1 − s is below the threshold.
@@ -55,6 +82,8 @@ pub struct ConvolutionShadow<P> {
     pub iterations: u32,
     /// Sharpening.
     pub sharpening: Sharpening,
+    /// What a receiver's plane takes off its depth; nothing in the paper.
+    pub plane_offset: Option<PlaneOffset>,
 }
 uniforms!(ConvolutionShadow<P> {
     mapping,
@@ -67,6 +96,7 @@ uniforms!(ConvolutionShadow<P> {
     threshold,
     iterations,
     sharpening,
+    plane_offset,
 });
 
 /// No kernel gets better after as many: uniforms of a file may ask for any number.
@@ -156,6 +186,58 @@ impl<P: Prefiltered> ConvolutionShadow<P> {
         self.prefiltered.window(l, &rectangle)
     }
 
+    /// The change of the receiver's depth across the picture's width and height, depths
+    /// being 0..=1 over the light view.
+    #[inline(always)]
+    fn slopes<L: Lanes>(
+        &self,
+        l: L,
+        f: &mut Fragment<'_, L>,
+        position: [F32<L>; 3],
+        distance: F32<L>,
+    ) -> [F32<L>; 2] {
+        let Some(offset) = &self.plane_offset else {
+            return [F32::splat(l, 0.0); 2];
+        };
+        let plane = offset
+            .planes
+            .plane(l, f, &self.mapping, position, distance, PLANES);
+        let size = self.mapping.size as f32;
+        each2(
+            #[inline(always)]
+            |k| match plane.projection {
+                Projection::Perspective => (plane.slope[k] * plane.depth).abs() * size,
+                Projection::Orthographic => plane.slope[k].abs() * size,
+            },
+        )
+    }
+
+    /// A receiver's depth, 0..=1, as a kernel whose blockers are at `blocker` is to take
+    /// it.
+    #[inline(always)]
+    fn lessened<L: Lanes>(
+        &self,
+        l: L,
+        scaled: F32<L>,
+        slopes: [F32<L>; 2],
+        [blocker, receiver]: [F32<L>; 2],
+        share: f32,
+    ) -> F32<L> {
+        let Some(offset) = &self.plane_offset else {
+            return scaled;
+        };
+        let [w, h] = self.light_half;
+        let [u, v] = [
+            self.mapping.half_width(w, blocker, receiver),
+            self.mapping.half_width(h, blocker, receiver),
+        ];
+        let gained = (slopes[0] * u + slopes[1] * v) * share;
+        scaled
+            - gained
+                .max(F32::splat(l, 0.0))
+                .min(F32::splat(l, offset.most))
+    }
+
     #[inline(always)]
     fn sharpened<L: Lanes>(&self, l: L, visible: F32<L>, behind: F32<L>) -> F32<L> {
         if self.sharpening.strength == 0.0 {
@@ -171,7 +253,7 @@ impl<P: Prefiltered> FragmentShader for ConvolutionShadow<P> {
     fn outputs(&self) -> FragmentOutputs {
         FragmentOutputs {
             discards: true,
-            textures: 4,
+            textures: if self.plane_offset.is_some() { 5 } else { 4 },
             counts: &[BELOW_THRESHOLD],
             ..FragmentOutputs::default()
         }
@@ -193,13 +275,23 @@ impl<P: Prefiltered> FragmentShader for ConvolutionShadow<P> {
         }
         let scaled = scaled.clamp(0.0, 1.0);
         let reach = self.expansion.reach;
-        let terms = self.terms(l, scaled * reach - self.expansion.offset);
+        let receiver = reached.select_f32(at.distance, F32::splat(l, range.far));
+        let slopes = self.slopes(l, f, [x, y, z], receiver);
+        let shares = match &self.plane_offset {
+            Some(offset) => [offset.first, offset.last],
+            None => [0.0; 2],
+        };
+        let mut terms = self.terms(l, scaled * reach - self.expansion.offset);
         // Stages 1 and 2.
         let mut distance = F32::splat(l, range.near);
         let mut average = zero;
         let mut lit = !reached;
         for _ in 0..=self.iterations.min(MOST_ITERATIONS) {
             let window = self.window(l, at.uv, distance, at.distance);
+            if self.plane_offset.is_some() {
+                let less = self.lessened(l, scaled, slopes, [distance, receiver], shares[0]);
+                terms = self.terms(l, less * reach - self.expansion.offset);
+            }
             lit = lit | !P::share(&window).gt(zero);
             f.discard(lit);
             if !(!lit & f.live()).any() {
@@ -220,6 +312,10 @@ impl<P: Prefiltered> FragmentShader for ConvolutionShadow<P> {
         }
         // Stages 3 to 5.
         let window = self.window(l, at.uv, distance, at.distance);
+        if self.plane_offset.is_some() {
+            let less = self.lessened(l, scaled, slopes, [distance, receiver], shares[1]);
+            terms = self.terms(l, less * reach - self.expansion.offset);
+        }
         let blocked = self.blocked(l, f, &terms, &window).clamp(0.0, 1.0);
         let visible = one - blocked * P::share(&window);
         let visible = self.sharpened(l, visible.clamp(0.0, 1.0), scaled - average);

@@ -26,6 +26,8 @@ use crate::soft_volumes::{HardPlane, own_texels, reads, receiver, texel_of};
 
 /// Contributions that fit into a channel for certain: 255 / 7.
 pub const CAPACITY: u32 = 36;
+/// Bits of a contribution that a channel takes, and channels that take some: 12 in all.
+pub const BITS_AND_CHANNELS: [u32; 2] = [3, 4];
 /// What full coverage is stored as.
 pub const FULL: f32 = 4095.0;
 /// Texels along a face of the angle map.

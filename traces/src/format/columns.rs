@@ -65,6 +65,11 @@ impl Writer {
     }
 }
 
+/// How many records a table says that it has, which is written first.
+pub(crate) fn records(start: [u8; 8]) -> u64 {
+    u64::from_le_bytes(start)
+}
+
 /// Columns that are read from.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader<'a> {
@@ -85,7 +90,7 @@ impl<'a> Reader<'a> {
         }
         let (sizes, mut rest) = rest.split_at_checked(8 * columns).ok_or_else(short)?;
         let mut reader = Self {
-            records: u64::from_le_bytes(*records),
+            records: self::records(*records),
             columns: Vec::with_capacity(columns),
         };
         for size in sizes.as_chunks().0 {

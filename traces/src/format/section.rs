@@ -146,6 +146,22 @@ impl Entry {
         })
     }
 
+    /// Its first bytes, without the rest, of a file that was checked.
+    pub(crate) fn peek<const N: usize>(&self, file: &[u8]) -> Result<[u8; N], TraceError> {
+        let stored = self.stored_bytes(file);
+        let short = || self.wrong(&format!("it has less than {N} bytes"));
+        match self.codec {
+            0 => stored.first_chunk().copied().ok_or_else(short),
+            _ => {
+                let wrong = |e: std::io::Error| self.wrong(&format!("zstd: {e}"));
+                let mut start = [0; N];
+                let mut stream = zstd::stream::Decoder::with_buffer(stored).map_err(wrong)?;
+                stream.read_exact(&mut start).map_err(wrong)?;
+                Ok(start)
+            }
+        }
+    }
+
     fn inflate(&self, stored: &[u8]) -> Result<Vec<u8>, TraceError> {
         if self.raw > MOST_RAW || self.raw / MOST_RATIO > self.stored {
             return Err(self.wrong("it promises more bytes than it can hold"));

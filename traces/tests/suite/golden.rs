@@ -43,6 +43,23 @@ fn configs() -> Vec<GpuConfig> {
 }
 
 #[test]
+fn events_are_as_many_as_sections_say() {
+    for (name, trace) in &goldens() {
+        for frame in 0..trace.frames() {
+            let said = trace.event_count(frame).unwrap();
+            let mut heard = Heard::default();
+            let told = trace.events(frame, &mut heard);
+            assert_eq!(
+                said,
+                told.is_ok().then_some(heard.blocks.len() as u64),
+                "{name}"
+            );
+            assert!(said.is_none_or(|n| n > 0), "{name}");
+        }
+    }
+}
+
+#[test]
 fn every_golden_replays_everywhere() {
     let goldens = goldens();
     assert!(goldens.len() >= 4, "{}", goldens.len());

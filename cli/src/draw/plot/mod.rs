@@ -9,6 +9,7 @@ mod axis;
 mod cloud;
 mod layout;
 mod mark;
+mod panels;
 mod place;
 mod raster;
 mod svg;
@@ -17,6 +18,7 @@ use gnomon_claims::chart::Chart;
 
 use super::Picture;
 pub(crate) use cloud::{Cloud, Member, Spot};
+pub(crate) use panels::{Panel, Panels};
 
 /// The chart as a picture.
 pub fn picture(chart: &Chart) -> Picture {
@@ -42,6 +44,11 @@ pub(crate) fn cloud_svg(cloud: &Cloud) -> String {
 /// `--line`.
 pub(crate) fn cloud_in_page(cloud: &Cloud) -> String {
     svg::write(&cloud.lay_out(), svg::Place::Page)
+}
+
+/// Small plots over the same axes as an SVG document.
+pub(crate) fn panels_svg(panels: &Panels) -> String {
+    svg::write(&panels.lay_out(), svg::Place::File)
 }
 
 #[cfg(test)]

@@ -119,6 +119,7 @@ impl Demo<'_> {
             params: &shot.params,
             done: &shot.done,
             heat: Some(&heat),
+            carries: None,
             wedges: None,
         };
         for (kind, caption) in OVERLAYS {

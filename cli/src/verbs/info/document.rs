@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use gnomon_raster::{AccessBatch, AccessObserver};
 use gnomon_traces::{Meta, Trace, TraceError};
 use serde::Serialize;
 
@@ -44,16 +43,6 @@ pub(crate) struct SectionDocument {
     pub(crate) offset: u64,
     pub(crate) stored_bytes: u64,
     pub(crate) raw_bytes: u64,
-}
-
-/// Counts what it hears.
-#[derive(Default)]
-struct Events(u64);
-
-impl AccessObserver for Events {
-    fn batch(&mut self, _: usize, batch: &AccessBatch<'_>) {
-        self.0 += batch.blocks.len() as u64;
-    }
 }
 
 impl TraceDocument {
@@ -116,12 +105,6 @@ impl FrameDocument {
             .collect();
         shaders.sort();
         shaders.dedup();
-        let mut events = None;
-        if trace.meta().traffic {
-            let mut counted = Events::default();
-            trace.events(frame, &mut counted)?;
-            events = Some(counted.0);
-        }
         let passes = shape.passes.iter().map(|pass| PassDocument {
             name: pass.label.clone(),
             draws: pass.draws.len(),
@@ -131,7 +114,7 @@ impl FrameDocument {
             passes: passes.collect(),
             textures: shape.textures.len(),
             shaders,
-            events,
+            events: trace.event_count(frame)?,
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use gnomon_pipeline::measure::carries::{self, Carries};
 use gnomon_pipeline::measure::heat::{self, Heat};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered};
 use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
@@ -88,6 +89,26 @@ impl RenderJob {
             return Ok(None);
         }
         Ok(self.technique.wedges(&self.scene, &self.params)?)
+    }
+
+    /// What wedges add up to, or what would have to be set to keep carries at all.
+    pub(super) fn carries(&self) -> Result<Option<Carries>, CliError> {
+        let wanted = (self.overlays.iter()).any(|(k, _)| *k == OverlayKind::Carries);
+        if !wanted {
+            return Ok(None);
+        }
+        let (scene, technique, params) = (&self.scene, self.technique, &self.params);
+        let found = carries::record(scene, technique, params, &self.settings)?;
+        found.map(Some).ok_or_else(|| CliError::Flag {
+            flag: "--overlay",
+            value: OverlayKind::Carries.name().to_owned(),
+            valid: format!(
+                "{}, as it is set, adds no coverage up in 8-bit channels; \
+                 soft-shadow-volumes-optimised does, and soft-shadow-volumes with \
+                 --set buffer=rgba8 or rgba8x2",
+                technique.name()
+            ),
+        })
     }
 
     pub(super) fn heat(&self) -> Result<Option<Heat>, CliError> {

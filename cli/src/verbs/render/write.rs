@@ -42,12 +42,14 @@ pub(super) fn write(
     }
     progress.step();
     let heat = job.heat()?;
+    let carries = job.carries()?;
     let wedges = job.wedges()?;
     let source = overlay::Source {
         scene: &job.scene,
         params: &job.params,
         done,
         heat: heat.as_ref(),
+        carries: carries.as_ref(),
         wedges: wedges.as_ref(),
     };
     for (kind, path) in &job.overlays {

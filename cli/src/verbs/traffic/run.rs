@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use gnomon_traces::FrameShape;
+use gnomon_traces::judged::MERGED;
 use gnomon_traces::profile::{Judge, JudgeOptions, Order, Profile, ProfileError, profile};
 use gnomon_traces::profile::{PROFILES, Traffic};
 
@@ -83,7 +84,7 @@ fn judge(
     file.named(file.trace().events(args.frame, &mut judge))?;
     let mut traffic = judge.finish();
     if options.merged {
-        traffic.profile += " (passes merged)";
+        traffic.profile += MERGED;
     }
     Ok(traffic)
 }

@@ -3,6 +3,7 @@
 use gnomon_pipeline::measure::comparison::{Reference, ReferenceKind};
 use gnomon_pipeline::measure::render::RenderSettings;
 use gnomon_pipeline::technique::{Params, TechniqueError};
+use gnomon_pipeline::world::light_image::LightImage;
 
 use super::budget::Figures;
 use super::candidates::Candidate;
@@ -58,10 +59,12 @@ impl<'a> Stage<'a> {
         repeat: u32,
     ) -> Result<Option<Figures>, CliError> {
         let params = params(candidate, self.job.light)?;
+        let technique = candidate.technique;
+        let image = technique.light_image(&params)?;
         let mut figures = Figures::default();
         for (frame, reference) in &self.truths {
             let scene = &self.job.frames[*frame];
-            let technique = candidate.technique;
+            let imaged = self.imaged(*frame, image.as_ref())?;
             // What is refused here the frame refuses too.
             let prepared = technique.prepare(scene, &params, &self.job.cache, &|_| {});
             let prepared = prepared.unwrap_or_default();
@@ -70,7 +73,7 @@ impl<'a> Stage<'a> {
                 scene,
                 technique,
                 params: &params,
-                reference,
+                reference: imaged.as_ref().unwrap_or(reference),
                 settings: RenderSettings {
                     size: self.size,
                     gpu: self.job.gpu,
@@ -94,6 +97,21 @@ impl<'a> Stage<'a> {
             });
         }
         Ok(Some(figures))
+    }
+
+    /// The truth of a frame under a light with an image.
+    fn imaged(
+        &self,
+        frame: usize,
+        image: Option<&LightImage>,
+    ) -> Result<Option<Reference>, CliError> {
+        if image.is_none() {
+            return Ok(None);
+        }
+        let (scene, light) = (&self.job.frames[frame], (self.job.light, image));
+        let (kind, cache) = (ReferenceKind::Exact, Some(&self.job.cache));
+        let truth = Reference::with_light_image(scene, light, self.size, kind, cache, &|| {})?;
+        Ok(Some(truth))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::truth::metrics::ssim::ssim;
 use crate::truth::metrics::{MetricError, Picture, rgb_of};
 use crate::truth::oracle::environment::{EnvironmentOracle, samples};
 use crate::truth::oracle::surfaces::Surfaces;
-use crate::world::environment::CubeMap;
+use crate::world::environment::Environment;
 use crate::world::scene::Scene;
 
 /// Luminance of linear Rec. 709 RGB.
@@ -27,7 +27,7 @@ pub struct EnvironmentReference {
     pub directions: usize,
     /// Linear RGB; `None` where no surface is seen.
     pub radiance: Vec<Option<[f64; 3]>>,
-    /// The picture, the scene's background where no surface is seen.
+    /// The picture, with the map where no surface is seen.
     pub srgb: Vec<[u8; 4]>,
     sight: Sight,
 }
@@ -47,25 +47,30 @@ impl EnvironmentReference {
     /// called for every row, from any thread.
     pub fn new(
         scene: &Scene,
-        map: &CubeMap,
+        map: &Environment,
         size: [u32; 2],
         directions: Directions,
         highlights: bool,
         row_done: &(dyn Fn() + Sync),
     ) -> Self {
         let surfaces = Surfaces::new(scene);
-        let samples = samples(map, directions.count, directions.seed);
+        let samples = samples(&map.source, directions.count, directions.seed);
         let oracle = EnvironmentOracle::new(&surfaces, samples);
         let radiance = oracle.image(&surfaces, scene, size, highlights, row_done);
         let encoder = SrgbEncoder::new();
-        let shown = |rgb: &Option<[f64; 3]>| {
-            let [r, g, b] = rgb.map_or(scene.background, |rgb| rgb.map(|v| v as f32));
+        let rays = scene.camera.eye_rays(size[0], size[1]);
+        let behind = |i: usize| {
+            let [x, y] = [i as u32 % size[0], i as u32 / size[0]].map(f64::from);
+            scene.behind(rays.direction(x + 0.5, y + 0.5))
+        };
+        let shown = |(i, rgb): (usize, &Option<[f64; 3]>)| {
+            let [r, g, b] = rgb.map_or_else(|| behind(i), |rgb| rgb.map(|v| v as f32));
             encoder.encode([r, g, b, 1.0])
         };
         Self {
             size,
             directions: directions.count,
-            srgb: radiance.iter().map(shown).collect(),
+            srgb: radiance.iter().enumerate().map(shown).collect(),
             radiance,
             sight: Sight::new(scene, &surfaces, size),
         }

@@ -39,7 +39,7 @@ struct Drawn {
 fn drawn(name: &str, set: &[&str]) -> Drawn {
     let scene = builtin::build(name).unwrap();
     let found = techniques::find("penumbra-wedges-restructured").unwrap();
-    let params = Params::parse(found, set).unwrap();
+    let params = Params::parse(found, ["horizon=off"].iter().chain(set)).unwrap();
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
     let built = build(&scene, SIZE, &params).unwrap();
     gpu.load(&built.frame.recording).unwrap();

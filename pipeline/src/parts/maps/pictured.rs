@@ -82,7 +82,6 @@ pub(crate) trait Pictures {
 
 /// What frames of pictures share.
 pub(crate) struct Pictured<'a> {
-    pub(crate) name: &'static str,
     pub(crate) scene: &'a Scene,
     pub(crate) size: [u32; 2],
     pub(crate) frame: FrameSettings,
@@ -100,7 +99,7 @@ impl Pictured<'_> {
     ) -> Result<Frame, TechniqueError> {
         let around = Surroundings::new(self.scene, self.size);
         let frame = ShadowedFrame::new(self.scene, self.size, &self.frame)?;
-        let frame = frame.with_horizon(self.name, self.horizon, false);
+        let frame = frame.with_horizon(self.horizon, false);
         let (mut frame, positions) = frame.with_positions()?;
         let [width, height] = self.size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);

@@ -56,15 +56,6 @@ impl Texels {
             ..Self::read(reads, side)
         }
     }
-
-    /// These and the four texels under each of the next level's.
-    pub(crate) fn with_those_under(self, next: &Self) -> Self {
-        Self {
-            begin: [0, 1].map(|k| self.begin[k].min(2 * next.begin[k])),
-            end: [0, 1].map(|k| self.end[k].max((2 * next.end[k]).min(self.side))),
-            ..self
-        }
-    }
 }
 
 /// What a pass reads or writes: image `mip` of some textures.

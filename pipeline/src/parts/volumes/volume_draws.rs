@@ -129,6 +129,11 @@ impl<'a> VolumeCasters<'a> {
         })
     }
 
+    /// What was examined.
+    pub(crate) fn examined(&self) -> &[Examined<'a>] {
+        &self.examined
+    }
+
     /// The volumes that `hard` throws, a point of light number `light`, for a
     /// pass with colour attachments `color`, of which none is written.
     pub(crate) fn volumes(

@@ -199,7 +199,6 @@ impl Technique for BackprojectedMaps {
     ) -> Result<Frame, TechniqueError> {
         let settings = Settings::read(*self, params)?;
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,

@@ -39,6 +39,7 @@ use self::pictures::PatchPictures;
 use self::settings::Settings;
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
+use crate::parts::horizon::HORIZON;
 use crate::parts::maps::mapped::ViewSettings;
 use crate::parts::maps::pictured::Pictured;
 use crate::technique::{
@@ -62,6 +63,7 @@ impl Technique for ConeCulling {
         param_list!(
             Settings::PARAMS,
             ViewSettings::PARAMS,
+            &[HORIZON.info],
             FrameSettings::PARAMS
         )
     }
@@ -85,13 +87,12 @@ impl Technique for ConeCulling {
     ) -> Result<Frame, TechniqueError> {
         let settings = Settings::read(params)?;
         let pictured = Pictured {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,
             views: settings.view,
             skip: settings.skip,
-            horizon: false,
+            horizon: params.get(&HORIZON)?,
         };
         pictured.frame(|recording| PatchPictures::create(self.name(), &settings, recording))
     }

@@ -32,7 +32,11 @@ fn scene() -> Scene {
 }
 
 fn drawn(set: &[&str]) -> Drawn {
-    let params = Params::parse(&ConeCulling, [set, &["map-size=32"]].concat()).unwrap();
+    let params = Params::parse(
+        &ConeCulling,
+        [set, &["map-size=32", "horizon=off"]].concat(),
+    )
+    .unwrap();
     let frame = ConeCulling.frame(&scene(), SIZE, &params).unwrap();
     let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
     gpu.load(&frame.recording).unwrap();

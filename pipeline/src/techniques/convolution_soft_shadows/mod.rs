@@ -18,15 +18,18 @@
 //! * All terms' images of a kind are tiles of one texture, so that any order fits the
 //!   texture slots. Look-ups count as the paper counts them: at M = 4 and mip chains
 //!   six RGBA and one depth a pixel.
-//! * Discs, spheres and polygons are squares of their area, which is said.
+//! * Discs, spheres and polygons are squares of their area, and parallelograms that are no
+//!   rectangles the rectangles about them, which is said.
+//! * Receivers' depths are lessened by what their planes gain over a kernel, and limited by
+//!   their horizon (`plane-offset=0`, `horizon=off`: the paper's form).
 
 mod images;
-mod needed;
 mod prefilter;
 mod settings;
 #[cfg(test)]
 mod tests;
 
+use glam::DVec3;
 use gnomon_raster::shader::FragmentStage;
 use gnomon_raster::state::{
     ColorTargetState, CompareFunction, DepthState, DepthStencilState, PrimitiveState, Viewport,
@@ -37,11 +40,10 @@ use gnomon_raster::{
 use gnomon_shaders::convolution::look_up::{
     BoxEdges, FloatTables, IntegerTables, Mipmaps, Prefiltered,
 };
-use gnomon_shaders::convolution::visibility::{ConvolutionShadow, Sharpening};
+use gnomon_shaders::convolution::visibility::{ConvolutionShadow, PlaneOffset, Sharpening};
 use gnomon_shaders::transform::FullScreen;
 
 use self::images::{BasisTextures, filtered};
-use self::needed::Needed;
 use self::prefilter::Prefilter;
 use self::settings::{Filter, Settings};
 use crate::param_list;
@@ -93,8 +95,11 @@ impl Technique for ConvolutionSoftShadows {
     ) -> Result<Frame, TechniqueError> {
         let settings = Settings::read(params)?;
         let frame = ShadowedFrame::new(scene, size, &settings.frame)?;
-        let frame = frame.with_horizon(self.name(), settings.horizon, false);
-        let (mut frame, positions) = frame.with_positions()?;
+        let frame = frame.with_horizon(settings.horizon, false);
+        let (mut frame, positions) = match settings.plane_offset > 0.0 {
+            true => frame.with_positions_and_planes()?,
+            false => frame.with_positions()?,
+        };
         let recording = &mut frame.recording;
         let shadows = Shadows {
             size,
@@ -128,21 +133,32 @@ fn visibility_texture(
     Ok(recording.create(&desc)?)
 }
 
-/// Lights that are no parallelograms.
+/// Lights that are no rectangles.
 fn square_instead(light: &Light, number: usize) -> Option<Warning> {
-    let shape = match light.shape {
-        LightShape::Disc { .. } => "disc",
-        LightShape::Sphere { .. } => "sphere",
-        LightShape::Polygon(_) => "polygon",
-        _ => return None,
-    };
-    Some(Warning {
-        code: "light-as-square",
+    let warning = |code, what: &str| Warning {
+        code,
         count: 1,
-        message: format!(
-            "light {number} is a {shape}; convolution takes rectangles, so a square of its area stands for it"
-        ),
-    })
+        message: format!("light {number} is a {what}"),
+    };
+    let square = "convolution takes rectangles, so a square of its area stands for it";
+    let square = |shape: &str| warning("light-as-square", &format!("{shape}; {square}"));
+    match light.shape {
+        LightShape::Disc { .. } => Some(square("disc")),
+        LightShape::Sphere { .. } => Some(square("sphere")),
+        LightShape::Polygon(_) => Some(square("polygon")),
+        LightShape::Rectangle { edge_u, edge_v, .. } if is_sheared(edge_u, edge_v) => {
+            let what = "parallelogram whose edges are not at right angles; convolution takes \
+                rectangles, so the one about it stands for it";
+            Some(warning("light-as-rectangle", what))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the angle between edges is off a right one by more than a twentieth of a degree.
+fn is_sheared(u: DVec3, v: DVec3) -> bool {
+    const COSINE: f64 = 1e-3;
+    u.dot(v).abs() > COSINE * u.length() * v.length()
 }
 
 /// What all lights of a frame share.
@@ -214,11 +230,6 @@ impl Shadows<'_> {
         label: &dyn Fn(&str) -> String,
     ) -> (Vec<Pass>, Draw) {
         let settings = &self.settings;
-        let reads = fitted.reads(&self.around, light.extent);
-        let needed = match reads.filter(|_| settings.skip) {
-            Some(reads) => Needed::of(&reads, settings.side, settings.filter),
-            None => Needed::all(settings.side),
-        };
         let picture = fitted.pass(
             label("light view"),
             geometry,
@@ -231,7 +242,6 @@ impl Shadows<'_> {
             settings,
             images: &self.images,
             view: self.map.depth,
-            needed: &needed,
         };
         let (passes, images) = prefilter.passes(label);
         let filtered = |pass| Pass::new(PassRole::Prefilter, pass);
@@ -280,6 +290,7 @@ impl Shadows<'_> {
         };
         let mut textures = vec![binding(self.positions.texture)];
         textures.extend(images.map(|i| filtered(i, self.settings.filter)));
+        textures.extend(self.positions.planes.map(binding));
         let [width, height] = self.size;
         Draw {
             viewport: Some(Viewport {
@@ -344,9 +355,22 @@ impl Shadows<'_> {
                 strength: settings.strength,
                 falloff: settings.falloff,
             },
+            plane_offset: (settings.plane_offset > 0.0).then(|| PlaneOffset {
+                planes: fitted.planes(),
+                first: settings.plane_offset * FIRST_SHARE,
+                last: settings.plane_offset,
+                most: MOST_OFFSET,
+            }),
         }
     }
 }
+
+/// Where the average depth of blockers is looked for, receivers' depths are lessened by
+/// this share of what they are for visibility.
+const FIRST_SHARE: f32 = 0.5;
+/// Largest offset of a receiver's depth, over the light view's range: beyond, blockers
+/// come near the other half of the series' period.
+const MOST_OFFSET: f32 = 0.2;
 
 /// As many squares along the longer side as the light is longer than wide.
 fn mipmaps(half: [f64; 2], settings: &Settings) -> Mipmaps {

@@ -9,7 +9,6 @@ use gnomon_shaders::convolution::basis::{BasisImages, DepthImage, Source};
 use gnomon_shaders::convolution::prefilter::{CopyLevel, Halve, LessMean};
 
 use super::images::{BasisTextures, Group};
-use super::needed::Needed;
 use super::settings::{Filter, Settings};
 use crate::parts::maps::tiles::{Level, Texels};
 
@@ -20,8 +19,6 @@ pub(super) struct Prefilter<'a> {
     pub(super) images: &'a BasisTextures,
     /// The light view's depth.
     pub(super) view: TextureId,
-    /// What of it receivers read.
-    pub(super) needed: &'a Needed,
 }
 
 impl Prefilter<'_> {
@@ -90,10 +87,7 @@ impl Prefilter<'_> {
             };
             shader.stage()
         };
-        let texels = match self.centred() {
-            true => Texels::all(self.settings.side),
-            false => self.needed.level(0),
-        };
+        let texels = Texels::all(self.settings.side);
         vec![
             series
                 .tiles
@@ -104,14 +98,14 @@ impl Prefilter<'_> {
         ]
     }
 
-    /// Level after level, as far as receivers read them.
+    /// Level after level.
     fn mip_passes(&self, group: &Group, label: &str) -> (Vec<RenderPass>, Vec<TextureId>) {
         let [main, aside] = [mains(group, 0).textures, asides(group, 0).textures];
         let textures = group.textures.len();
         let passes = group.tiles.mip_passes(
             label,
-            self.needed.last_level(),
-            |level| self.needed.level(level),
+            self.settings.side.ilog2(),
+            |level| Texels::all(self.settings.side >> level),
             |mip| Halve { textures, mip }.stage(),
             [&main, &aside],
         );
@@ -120,7 +114,7 @@ impl Prefilter<'_> {
 
     /// Summed-area tables, of what is left without the mean where that is asked for.
     fn table_passes(&self, group: &Group, label: &str) -> (Vec<RenderPass>, Vec<TextureId>) {
-        let texels = self.needed.level(0);
+        let texels = Texels::all(self.settings.side);
         let mut passes = Vec::new();
         let (mut from, mut to) = (mains(group, 0), asides(group, 0));
         if self.centred() {

@@ -69,7 +69,7 @@ const FORMAT: Param<ImageFormat> = Param::choice(
 
 pub(super) const MAP_SIZE: Param<u32> = Param::<u32>::power_of_two(
     "map-size",
-    512,
+    256,
     [64, 2048],
     "texels along a side of the light view",
 )
@@ -109,6 +109,13 @@ const FALLOFF: Param<f64> = Param::decimal(
 )
 .when(Condition::Not("a", &["0"]));
 
+const PLANE_OFFSET: Param<f64> = Param::decimal(
+    "plane-offset",
+    0.3,
+    0.0,
+    "share of what a receiver's plane gains over half a kernel that its depth is lessened by, half of it where blockers are looked for; 0: as in the paper",
+);
+
 const ITERATE: Param<u32> = Param::<u32>::whole(
     "iterate",
     0,
@@ -125,7 +132,7 @@ const THRESHOLD: Param<f64> = Param::decimal_above(
 
 const MIP_SHARPER: Param<f64> = Param::decimal(
     "mip-sharper",
-    0.8,
+    1.2,
     0.0,
     "mip levels finer than the one whose texels are as wide as the kernel",
 )
@@ -144,7 +151,7 @@ const PROBES: Param<Option<u32>> = Param::<Option<u32>>::whole_or(
 const SKIP: Param<bool> = Param::switch(
     "skip",
     true,
-    "build images, mip levels and tables only where some receiver reads them, look a further light up only in tiles that it can light; same bits",
+    "leave out casters outside a light view, and tiles of the screen to which a further light adds nothing; same bits",
 );
 
 /// Checked values.
@@ -166,6 +173,8 @@ pub(super) struct Settings {
     /// `None`: by the light's sides.
     pub(super) probes: Option<u32>,
     pub(super) skip: bool,
+    /// Share of the last kernel; 0 for none.
+    pub(super) plane_offset: f32,
     pub(super) horizon: bool,
     pub(super) frame: FrameSettings,
 }
@@ -186,6 +195,7 @@ impl Settings {
         THRESHOLD.info,
         MIP_SHARPER.info,
         PROBES.info,
+        PLANE_OFFSET.info,
         HORIZON.info,
         SKIP.info,
     ];
@@ -208,6 +218,7 @@ impl Settings {
             sharper: params.get(&MIP_SHARPER)?,
             probes: params.get(&PROBES)?,
             skip: params.get(&SKIP)?,
+            plane_offset: params.get(&PLANE_OFFSET)? as f32,
             horizon: params.get(&HORIZON)?,
             frame: FrameSettings::read(params)?,
         })

@@ -23,7 +23,13 @@ impl Finished {
     /// All that a technique left behind, of a scene with one light view.
     fn run(scene: &Scene, set: &[&str]) -> Self {
         let technique = find("convolution-soft-shadows").unwrap();
-        let params = Params::parse(technique, set).unwrap();
+        let published = [
+            "horizon=off",
+            "plane-offset=0",
+            "map-size=512",
+            "mip-sharper=0.8",
+        ];
+        let params = Params::parse(technique, published.iter().chain(set)).unwrap();
         let recording = technique.frame(scene, PICTURE, &params).unwrap().recording;
         let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
         gpu.load(&recording).unwrap();

@@ -123,9 +123,8 @@ fn frame(
     match environment.filter(|_| settings.frame.light.is_none()) {
         None => distant::frame(scene, sequence, &settings),
         Some(placed) => {
-            let mut dark = scene.clone();
-            dark.ambient = [0.0; 3]; // the residual is in L_s
-            environment::frame(&dark, placed, sequence, &settings)
+            // The residual is in L_s.
+            environment::frame(&scene.without_ambient(), placed, sequence, &settings)
         }
     }
 }

@@ -132,7 +132,6 @@ impl Technique for MomentMaps {
     ) -> Result<Frame, TechniqueError> {
         let settings = Settings::read(*self, params)?;
         let mapped = Mapped {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,

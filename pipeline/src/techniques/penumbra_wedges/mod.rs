@@ -223,7 +223,9 @@ impl Technique for PenumbraWedges {
     ) -> Result<Frame, TechniqueError> {
         let settings = CrossingSettings::read(params)?;
         let casters = casters::examine(scene, settings.penumbra.open_casters)?;
-        let mut frame = ShadowedFrame::new(scene, size, &settings.penumbra.frame)?.with_ambient();
+        let frame = ShadowedFrame::new(scene, size, &settings.penumbra.frame)?;
+        let frame = frame.with_horizon(settings.penumbra.horizon, false);
+        let mut frame = frame.with_ambient();
         let mut depth = frame.targets.depth_texture();
         if settings.culling == Culling::Zmax {
             let (pass, copy) = depth_copy::depth_copy(&frame.targets, size, &mut frame.recording)?;

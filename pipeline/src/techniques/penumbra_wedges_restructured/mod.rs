@@ -255,7 +255,9 @@ pub(crate) fn build(
 ) -> Result<Built, TechniqueError> {
     let choices = Choices::read(params, size)?;
     let casters = casters::examine(scene, choices.penumbra.open_casters)?;
-    let mut frame = ShadowedFrame::new(scene, size, &choices.penumbra.frame)?.with_ambient();
+    let frame = ShadowedFrame::new(scene, size, &choices.penumbra.frame)?;
+    let frame = frame.with_horizon(choices.penumbra.horizon, false);
+    let mut frame = frame.with_ambient();
     let (pass, copy) = depth_copy::depth_copy(&frame.targets, size, &mut frame.recording)?;
     frame.push(pass);
     let (mut inputs, mut bounds) = (vec![copy], Vec::new());

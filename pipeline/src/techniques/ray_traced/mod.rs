@@ -11,10 +11,7 @@
 //! All arithmetic is f32: receivers whose light passes an edge by less than rounding may
 //! go either way.
 
-mod hierarchy;
-mod split;
 mod textures;
-mod triangles;
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
 use gnomon_raster::{Format, LoadOp, RenderPass, RenderPipeline, TextureDescriptor};

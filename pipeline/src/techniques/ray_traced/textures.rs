@@ -1,12 +1,10 @@
 //! What rays read, in textures.
 
-use gnomon_raster::{
-    Format, MAX_TEXTURE_SIZE, Recording, Subresource, TextureDescriptor, TextureId,
-};
+use gnomon_raster::{Format, Recording, Subresource, TextureDescriptor, TextureId};
 use gnomon_shaders::shadow_rays::Table;
 
-use super::hierarchy::{self, Node};
-use super::triangles::Triangle;
+use crate::parts::hierarchy::{self, Node, Triangle};
+use crate::parts::tables::table;
 use crate::parts::view::View;
 use crate::technique::TechniqueError;
 use crate::world::light::HardLight;
@@ -46,7 +44,7 @@ impl CasterTextures {
             });
         }
         let nodes = hierarchy::build(&triangles);
-        let boxes = nodes.iter().flat_map(texels);
+        let boxes = nodes.iter().flat_map(Node::texels);
         let corners = triangles.iter().flatten().map(|p| [p[0], p[1], p[2], 0.0]);
         Ok(Self {
             nodes: table("hierarchy", boxes.collect(), recording)?,
@@ -65,29 +63,6 @@ fn triangles(scene: &Scene, view: &View) -> Vec<Triangle> {
             .collect::<Vec<_>>()
     };
     casters.flat_map(|o| of(&o.mesh)).collect()
-}
-
-fn texels(node: &Node) -> [[f32; 4]; 2] {
-    let ([a, b, c], [x, y, z]) = (node.low, node.high);
-    let triangle = node.triangle.map_or(-1.0, |t| t as f32);
-    [[a, b, c, triangle], [x, y, z, node.next as f32]]
-}
-
-/// A texture of these texels in rows, at least one.
-fn table(
-    label: &str,
-    mut texels: Vec<[f32; 4]>,
-    recording: &mut Recording,
-) -> Result<(TextureId, Table), TechniqueError> {
-    let side = (texels.len().max(1) as f64).sqrt() as u64 + 1;
-    let width = side.next_power_of_two().min(u64::from(MAX_TEXTURE_SIZE)) as usize;
-    let height = texels.len().div_ceil(width).max(1);
-    texels.resize(width * height, [0.0; 4]);
-    let desc = TextureDescriptor::d2(label, Format::Rgba32Float, width as u32, height as u32);
-    let texture = recording.create(&desc)?;
-    recording.write(texture, Subresource::default(), &texels)?;
-    let log_width = width.ilog2();
-    Ok((texture, Table { log_width }))
 }
 
 /// Points of a light, a row for each pixel of a block.

@@ -35,6 +35,7 @@ use self::pictures::SmoothiePictures;
 use self::settings::Settings;
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
+use crate::parts::horizon::HORIZON;
 use crate::parts::maps::mapped::MapSettings;
 use crate::parts::maps::pictured::Pictured;
 use crate::technique::{
@@ -55,7 +56,12 @@ impl Technique for Smoothies {
     }
 
     fn params(&self) -> &'static [ParamInfo] {
-        param_list!(Settings::PARAMS, MapSettings::PARAMS, FrameSettings::PARAMS)
+        param_list!(
+            Settings::PARAMS,
+            MapSettings::PARAMS,
+            &[HORIZON.info],
+            FrameSettings::PARAMS
+        )
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -76,13 +82,12 @@ impl Technique for Smoothies {
     ) -> Result<Frame, TechniqueError> {
         let settings = Settings::read(params)?;
         let pictured = Pictured {
-            name: self.name(),
             scene,
             size,
             frame: settings.frame,
             views: settings.maps.view,
             skip: settings.maps.skip,
-            horizon: false,
+            horizon: params.get(&HORIZON)?,
         };
         pictured.frame(|recording| SmoothiePictures::create(self.name(), &settings, recording))
     }

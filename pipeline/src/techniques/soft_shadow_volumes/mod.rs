@@ -34,8 +34,8 @@ use crate::parts::wedges::soft::edges::SoftCasters;
 use crate::parts::wedges::soft::light::SoftLight;
 use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings, WEDGE};
 use crate::technique::{
-    Capabilities, Frame, ParamInfo, Params, Pass, PassRole, SceneWedges, ShadowKind, Technique,
-    TechniqueError, WedgeUse,
+    Capabilities, CarryChannels, Frame, ParamInfo, Params, Pass, PassRole, SceneWedges, ShadowKind,
+    Technique, TechniqueError, WedgeUse,
 };
 use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
@@ -86,7 +86,7 @@ impl Technique for SoftShadowVolumes {
         let scene = &*settings.covering.lit(scene);
         let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
-        let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
+        let frame = frame.with_horizon(soft.horizon, has_image);
         let (mut frame, positions) = frame.with_positions()?;
         let buffers = Buffers::create(size, &settings, &mut frame.recording)?;
         let mut coverings = Coverings::default();
@@ -139,5 +139,9 @@ impl Technique for SoftShadowVolumes {
     ) -> Result<Option<SceneWedges>, TechniqueError> {
         let settings = SoftSettings::read(params)?;
         settings.scene_wedges(self.name(), scene, 1).map(Some)
+    }
+
+    fn carry_channels(&self, params: &Params) -> Result<Option<CarryChannels>, TechniqueError> {
+        Ok(SoftVolumesSettings::read(params)?.carry_channels())
     }
 }

@@ -3,7 +3,7 @@
 use crate::choices;
 use crate::parts::wedges::soft::covering::CoveringSettings;
 use crate::parts::wedges::soft::settings::SoftSettings;
-use crate::technique::{Condition, Param, Params, TechniqueError};
+use crate::technique::{CarryChannels, Condition, Param, Params, TechniqueError};
 
 choices! {
     /// What visibility is added up in.
@@ -91,5 +91,15 @@ impl SoftVolumesSettings {
             return contradiction("light-image", "red and green hold one color's coverage");
         }
         Ok(settings)
+    }
+
+    /// Six bits of coverage: of each colour, or to add and to take (paper III, §4.2).
+    pub(super) fn carry_channels(&self) -> Option<CarryChannels> {
+        let count = match self.buffer {
+            Buffer::R32f => return None,
+            Buffer::Rgba8x2 => 3,
+            Buffer::Rgba8 => 2,
+        };
+        Some(CarryChannels { bits: 6, count })
     }
 }

@@ -1,6 +1,6 @@
 //! Textures that coverage is added up in, and passes over the whole screen that make
 //! visibility of them. All of them are of 8-bit channels, but for the visibility that
-//! `horizon=on` limits.
+//! the horizon limits.
 
 use gnomon_raster::state::{ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState};
 use gnomon_raster::{

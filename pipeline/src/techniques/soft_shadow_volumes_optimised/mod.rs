@@ -34,6 +34,8 @@ mod part;
 mod settings;
 mod volumes;
 
+use gnomon_shaders::split_volumes;
+
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::passes::LitTest;
@@ -45,8 +47,8 @@ use crate::parts::wedges::soft::light::split;
 use crate::parts::wedges::soft::settings::{SOFT_LIGHTS, SoftSettings};
 use crate::parts::wedges::soft::wedges::warnings_of;
 use crate::technique::{
-    Capabilities, Frame, ParamInfo, Params, SceneWedges, ShadowKind, Technique, TechniqueError,
-    WedgeUse,
+    Capabilities, CarryChannels, Frame, ParamInfo, Params, SceneWedges, ShadowKind, Technique,
+    TechniqueError, WedgeUse,
 };
 use crate::world::light_image::LightImage;
 use crate::world::scene::Scene;
@@ -97,7 +99,7 @@ impl Technique for SoftShadowVolumesOptimised {
         let scene = &*settings.covering.lit(scene);
         let casters = SoftCasters::new(scene, size, soft.open_casters)?;
         let frame = ShadowedFrame::new(scene, size, &soft.frame)?;
-        let frame = frame.with_horizon(self.name(), soft.horizon, has_image);
+        let frame = frame.with_horizon(soft.horizon, has_image);
         let (mut frame, positions) = frame.with_positions()?;
         let depth_stencil = frame.targets.depth_texture();
         let mut buffers = Buffers::create(size, depth_stencil, &settings, &mut frame.recording)?;
@@ -142,5 +144,11 @@ impl Technique for SoftShadowVolumesOptimised {
             .soft
             .scene_wedges(self.name(), scene, settings.split)?;
         Ok(Some(wedges))
+    }
+
+    fn carry_channels(&self, _: &Params) -> Result<Option<CarryChannels>, TechniqueError> {
+        let [bits, count] = split_volumes::BITS_AND_CHANNELS;
+        let count = count as usize;
+        Ok(Some(CarryChannels { bits, count }))
     }
 }

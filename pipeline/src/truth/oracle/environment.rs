@@ -1,8 +1,8 @@
 //! The reference of environment lighting: directions sampled from the map, and
 //! shadow rays (Annen et al. 2008, §6: 1000 samples and ray tracing).
 //!
-//! Directions are chosen once for all pixels, in proportion to the map's energy:
-//! number k of n looks up the running sum of luminance at `(k + s) / n`, which
+//! Directions are chosen once for all pixels, in proportion to the energy of the map as
+//! its file has it, not of the cube that lights are fitted to: number k of n looks up the running sum of luminance at `(k + s) / n`, which
 //! stratifies energy, and lies in its texel at a point of the R2 sequence
 //! (Roberts: multiples of powers of the plastic number's inverse); `s` and the
 //! start of the sequence come from the seed. Light is at infinity, unlike that of
@@ -19,8 +19,7 @@ use rayon::prelude::*;
 use super::bvh::{Bvh, Ray};
 use super::sampled::jitter;
 use super::surfaces::{Receiver, SurfaceHit, Surfaces};
-use crate::world::environment::CubeMap;
-use crate::world::environment::cube::{direction, luminance};
+use crate::world::environment::MapSource;
 use crate::world::mesh::widen;
 use crate::world::scene::{Material, Scene};
 
@@ -39,47 +38,37 @@ pub struct Sample {
     pub energy: [f64; 3],
 }
 
-/// `count` directions in proportion to the luminance of `cube`.
-pub fn samples(cube: &CubeMap, count: usize, seed: u64) -> Vec<Sample> {
-    let total = luminance(cube.total());
+/// Luminance of linear Rec. 709 RGB.
+fn luminance(rgb: [f64; 3]) -> f64 {
+    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+}
+
+/// `count` directions in proportion to the luminance of `map`.
+pub fn samples(map: &MapSource, count: usize, seed: u64) -> Vec<Sample> {
+    let energies: Vec<[f64; 3]> = (0..map.len()).map(|i| map.energy(i)).collect();
+    let total: f64 = energies.iter().map(|e| luminance(*e)).sum();
     let start = [1, 2].map(|k| jitter(seed, k));
     let shift = jitter(seed, 0);
-    let (mut texel, mut before) = (0, 0u64);
+    let (mut texel, mut before) = (0, 0.0);
     let mut out = Vec::with_capacity(count);
     for k in 0..count {
-        let wanted = (k as f64 + shift) / count as f64 * total as f64;
-        while texel + 1 < cube.texels().len()
-            && (before + luminance(cube.texels()[texel])) as f64 <= wanted
-        {
-            before += luminance(cube.texels()[texel]);
+        let wanted = (k as f64 + shift) / count as f64 * total;
+        while texel + 1 < energies.len() && before + luminance(energies[texel]) <= wanted {
+            before += luminance(energies[texel]);
             texel += 1;
         }
         let inside = [0, 1].map(|a| {
             let t = start[a] + k as f64 * R2[a];
             t - t.floor()
         });
-        out.push(sample(cube, texel, inside, total as f64 / count as f64));
+        let (towards, density) = map.direction(texel, inside);
+        let share = total / count as f64 / luminance(energies[texel]) * density;
+        out.push(Sample {
+            towards,
+            energy: energies[texel].map(|e| e * share),
+        });
     }
     out
-}
-
-/// A direction at `inside` (0..1) of a texel, which stands for `share` of the
-/// luminance.
-fn sample(cube: &CubeMap, texel: usize, inside: [f64; 2], share: f64) -> Sample {
-    let side = cube.side();
-    let corner = [texel % side, texel / side % side];
-    let at = [0, 1].map(|k| cube.edge(0) + 2.0 * (corner[k] as f64 + inside[k]) / side as f64);
-    let towards = direction(texel / (side * side), at);
-    let length = towards.length();
-    // Solid angle per area of the face, over its mean in the texel.
-    let cell = 4.0 / (side * side) as f64;
-    let density = cell / (length * length * length) / cube.texel_angle(texel);
-    let units = cube.texels()[texel];
-    let scale = share / luminance(units).max(1) as f64 * density;
-    Sample {
-        towards: towards / length,
-        energy: cube.energy(units).map(|e| e * scale),
-    }
 }
 
 /// Shadow rays into an environment; build once, query often.
@@ -225,40 +214,40 @@ fn power(x: f64, exponent: f32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::environment::cube::direction;
     use crate::world::environment::{Environment, MapSettings, SKY};
     use crate::world::scene::builtin;
     use std::f64::consts::PI;
 
-    fn sky(side: usize) -> CubeMap {
-        let settings = MapSettings {
-            side,
-            ..MapSettings::default()
-        };
-        Environment::open(SKY, settings).unwrap().cube
+    fn sky() -> Environment {
+        Environment::open(SKY, MapSettings::default()).unwrap()
     }
 
-    fn uniform(radiance: f32) -> CubeMap {
+    fn uniform(radiance: f32) -> Environment {
         let map =
             Environment::of_radiance("white", [1, 1], vec![[radiance; 3]], MapSettings::default());
-        map.unwrap().cube
+        map.unwrap()
     }
 
     /// Sums over the sphere and its upper half are those of the map.
     #[test]
     fn samples_carry_the_energy_of_the_map() {
-        let cube = sky(32);
+        let map = sky();
+        let cube = &map.cube;
+        let side = cube.side();
         let all = cube.energy(cube.total());
         let above: f64 = (0..cube.texels().len())
             .filter(|i| {
-                let at = [i % 32, i / 32 % 32].map(|k| (2.0 * k as f64 + 1.0) / 32.0 - 1.0);
-                direction(i / 1024, at).y > 0.0
+                let middle = |k: usize| (2.0 * k as f64 + 1.0) / side as f64 - 1.0;
+                let at = [i % side, i / side % side].map(middle);
+                direction(i / (side * side), at).y > 0.0
             })
             .map(|i| cube.energy(cube.texels()[i])[1])
             .sum();
         for seed in [1, 2] {
-            let found = samples(&cube, 1024, seed);
+            let found = samples(&map.source, 1024, seed);
             assert_eq!(found.len(), 1024);
-            assert_eq!(found, samples(&cube, 1024, seed));
+            assert_eq!(found, samples(&map.source, 1024, seed));
             for c in 0..3 {
                 let sum: f64 = found.iter().map(|s| s.energy[c]).sum();
                 assert!((sum / all[c] - 1.0).abs() < 0.02, "{c}: {sum} {all:?}");
@@ -267,14 +256,14 @@ mod tests {
             let up: f64 = up.map(|s| s.energy[1]).sum();
             assert!((up / above - 1.0).abs() < 0.02, "{up} {above}");
         }
-        assert!(samples(&cube, 64, 1) != samples(&cube, 64, 2));
+        assert!(samples(&map.source, 64, 1) != samples(&map.source, 64, 2));
     }
 
     #[test]
     fn any_number_of_threads_gives_the_same_bits() {
         let scene = builtin::build("creature").unwrap();
         let surfaces = Surfaces::new(&scene);
-        let oracle = EnvironmentOracle::new(&surfaces, samples(&sky(32), 100, 1));
+        let oracle = EnvironmentOracle::new(&surfaces, samples(&sky().source, 100, 1));
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let image = || oracle.image(&surfaces, &scene, [40, 30], true, &|| {});
@@ -291,7 +280,7 @@ mod tests {
         let scene = builtin::build("cylinder").unwrap();
         let surfaces = Surfaces::new(&scene);
         let image = |count: usize| {
-            let oracle = EnvironmentOracle::new(&surfaces, samples(&uniform(1.0), count, 3));
+            let oracle = EnvironmentOracle::new(&surfaces, samples(&uniform(1.0).source, count, 3));
             oracle.image(&surfaces, &scene, [32, 24], false, &|| {})
         };
         let (few, many) = (image(256), image(2048));

@@ -63,6 +63,13 @@ pub fn solid_angle(low: [f64; 2], high: [f64; 2]) -> f64 {
         + corner_angle(low[0], low[1])
 }
 
+/// Solid angle of texel number `index` of faces of `side` texels, in steradians.
+pub(super) fn texel_angle(side: usize, index: usize) -> f64 {
+    let edge = |k: usize| -1.0 + 2.0 * k as f64 / side as f64;
+    let (x, y) = (index % side, index / side % side);
+    solid_angle([edge(x), edge(y)], [edge(x + 1), edge(y + 1)])
+}
+
 /// Luminance of an energy, in ten-thousandths of a unit.
 pub fn luminance(energy: [u64; 3]) -> u64 {
     (0..3).map(|c| LUMINANCE[c] * energy[c]).sum()
@@ -81,15 +88,15 @@ pub struct CubeMap {
 impl CubeMap {
     /// From linear radiance, finite and at least 0, face after face, row by row;
     /// `None` without any light.
+    #[cfg(test)]
     pub(super) fn new(side: usize, radiance: Vec<[f64; 3]>) -> Option<Self> {
-        let place = |k: usize| -1.0 + 2.0 * k as f64 / side as f64;
-        let angle = |i: usize| {
-            let (x, y) = (i % side, i / side % side);
-            solid_angle([place(x), place(y)], [place(x + 1), place(y + 1)])
-        };
-        let energy: Vec<[f64; 3]> = (0..radiance.len())
-            .map(|i| radiance[i].map(|v| v * angle(i)))
-            .collect();
+        let of = |i: usize| radiance[i].map(|v| v * texel_angle(side, i));
+        Self::of_energy(side, &(0..radiance.len()).map(of).collect::<Vec<_>>())
+    }
+
+    /// From radiance times solid angle, finite and at least 0, face after face, row by
+    /// row; `None` without any light.
+    pub(super) fn of_energy(side: usize, energy: &[[f64; 3]]) -> Option<Self> {
         let total = |c: usize| energy.iter().map(|e| e[c]).sum::<f64>();
         let most = (0..3).map(total).fold(0.0, f64::max);
         let unit = unit_for(most)?;
@@ -128,9 +135,7 @@ impl CubeMap {
 
     /// Solid angle of texel number `index`, in steradians.
     pub fn texel_angle(&self, index: usize) -> f64 {
-        let (x, y) = (index % self.side, index / self.side % self.side);
-        let low = [self.edge(x), self.edge(y)];
-        solid_angle(low, [self.edge(x + 1), self.edge(y + 1)])
+        texel_angle(self.side, index)
     }
 
     /// Mean radiance of every texel.

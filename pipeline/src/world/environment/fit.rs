@@ -32,6 +32,8 @@
 
 use super::EnvironmentError;
 use super::cube::{CubeMap, FACES, luminance, sum};
+use super::moments::Found;
+pub use super::moments::Moments;
 
 /// Shape of fitted lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,6 +55,29 @@ pub enum ResidualRule {
     Mean,
 }
 
+/// Where a light lies that stands for texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightPlace {
+    /// Over its texels: the paper's.
+    Texels,
+    /// As large, about the luminance centroid of what it took.
+    Centroid,
+    /// About the centroid, and as large as light spread evenly would have to be to be
+    /// spread as much.
+    #[default]
+    Moments,
+}
+
+/// What light that no area light took is as ambient light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AmbientForm {
+    /// The same from everywhere: the paper's.
+    Even,
+    /// Spherical harmonics up to order 1: four coefficients a colour.
+    #[default]
+    Harmonic,
+}
+
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitSettings {
@@ -64,6 +89,10 @@ pub struct FitSettings {
     pub form: LightForm,
     /// What they leave.
     pub residual: ResidualRule,
+    /// Where they lie.
+    pub place: LightPlace,
+    /// What becomes of all that they leave.
+    pub ambient: AmbientForm,
 }
 
 impl Default for FitSettings {
@@ -73,6 +102,8 @@ impl Default for FitSettings {
             threshold: None,
             form: LightForm::default(),
             residual: ResidualRule::default(),
+            place: LightPlace::default(),
+            ambient: AmbientForm::default(),
         }
     }
 }
@@ -81,7 +112,7 @@ impl Default for FitSettings {
 pub const MOST_LIGHTS: usize = 1024;
 
 /// A fitted light: a rectangle of texels of a face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaFit {
     /// Which face.
     pub face: usize,
@@ -91,6 +122,8 @@ pub struct AreaFit {
     pub high: [usize; 2],
     /// Energy that it took, in units of the map.
     pub energy: [u64; 3],
+    /// Where that is.
+    pub moments: Moments,
 }
 
 /// Lights and what they left.
@@ -102,6 +135,10 @@ pub struct Fit {
     pub residual: Vec<[u64; 3]>,
     /// The threshold that was used.
     pub threshold: f64,
+    /// Where lights lie.
+    pub place: LightPlace,
+    /// What the residual becomes.
+    pub ambient: AmbientForm,
     /// Texels with energy that no light covers.
     pub uncovered: usize,
     /// Their energy, in units of the map; a part of the residual.
@@ -222,14 +259,16 @@ impl<'a> Fitting<'a> {
                 break;
             };
             let area = self.grown(self.area_of(seed));
-            let energy = self.take(area);
-            if luminance(energy) > 0 {
+            let (energy, found) = self.take(area);
+            if let Some(moments) = found.moments(area.face, self.settings.form == LightForm::Square)
+            {
                 let Area { face, low, high } = area;
                 self.lights.push(AreaFit {
                     face,
                     low,
                     high,
                     energy,
+                    moments,
                 });
             }
             bare[face] = self.bare(face);
@@ -246,6 +285,8 @@ impl<'a> Fitting<'a> {
             lights: self.lights,
             residual: self.left,
             threshold: self.threshold,
+            place: self.settings.place,
+            ambient: self.settings.ambient,
         }
     }
 
@@ -351,8 +392,9 @@ impl<'a> Fitting<'a> {
     }
 
     /// Takes an area's energy out and covers it.
-    fn take(&mut self, area: Area) -> [u64; 3] {
+    fn take(&mut self, area: Area) -> ([u64; 3], Found) {
         let mut taken = [0; 3];
+        let mut found = Found::new(self.side);
         for y in area.low[1]..area.high[1] {
             for x in area.low[0]..area.high[0] {
                 let i = (area.face * self.side + y) * self.side + x;
@@ -362,12 +404,14 @@ impl<'a> Fitting<'a> {
                     ResidualRule::Excess => luminance(left) > luminance(mean),
                 };
                 let rest = [0, 1, 2].map(|c| if keep { left[c].min(mean[c]) } else { 0 });
-                (0..3).for_each(|c| taken[c] += left[c] - rest[c]);
+                let own = [0, 1, 2].map(|c| left[c] - rest[c]);
+                (0..3).for_each(|c| taken[c] += own[c]);
+                found.add(area.face, [x, y], luminance(own));
                 self.left[i] = rest;
                 self.covered[i] = true;
             }
         }
-        taken
+        (taken, found)
     }
 }
 
@@ -432,6 +476,7 @@ mod tests {
                 threshold: given,
                 form: if square { LightForm::Square } else { LightForm::Rectangle },
                 residual: if mean { ResidualRule::Mean } else { ResidualRule::Excess },
+                ..FitSettings::default()
             };
             let Ok(fit) = fit("random", &cube, &settings) else {
                 // Every face is of one brightness: nothing exceeds the mean.

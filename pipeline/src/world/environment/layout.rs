@@ -1,20 +1,15 @@
-//! How the texels of a picture cover directions, and their way onto a cube.
+//! How the texels of a picture cover directions.
 //!
-//! Every texel is cut into parts; each part adds its radiance, weighted by its
-//! solid angle, to the cube texel that its centre points at. So a cube texel
-//! holds the mean radiance over its directions, and a map of one brightness keeps
-//! it exactly.
+//! A texel's energy is its radiance times its solid angle, exactly. What becomes of it
+//! on a cube is in [`spread`](super::spread).
 
 use std::f64::consts::PI;
 
 use super::EnvironmentError;
-use super::cube::{FACES, direction, place_of};
+use super::cube::{FACES, direction, place_of, solid_angle};
 use crate::world::shape::on_circle;
 use crate::world::warning::SceneWarning;
 use glam::DVec3;
-
-/// Parts along a side of a texel of the cube, at least.
-const PARTS: usize = 4;
 
 /// Which directions a picture shows where.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,19 +28,12 @@ const ACROSS: [[usize; 2]; FACES] = [[0, 0], [1, 0], [2, 0], [3, 0], [4, 0], [5,
 const DOWN: [[usize; 2]; FACES] = [[0, 0], [0, 1], [0, 2], [0, 3], [0, 4], [0, 5]];
 
 /// Linear radiance with a known layout, all texels finite and at least 0.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Picture {
     size: [usize; 2],
     pub(super) texels: Vec<[f32; 3]>,
     layout: Layout,
     pub(super) warnings: Vec<SceneWarning>,
-}
-
-/// Radiance of six faces.
-pub(super) struct Faces {
-    pub(super) side: usize,
-    /// Face after face, row by row.
-    pub(super) radiance: Vec<[f64; 3]>,
 }
 
 impl Picture {
@@ -77,8 +65,19 @@ impl Picture {
         })
     }
 
-    /// Texels round the equator, a quarter of which a face spans.
-    fn side(&self) -> usize {
+    /// The six faces of a cube below each other.
+    pub(super) fn strip(side: usize, texels: Vec<[f32; 3]>) -> Self {
+        debug_assert_eq!(texels.len(), FACES * side * side);
+        Self {
+            size: [side, FACES * side],
+            texels,
+            layout: Layout::Cube(DOWN, false),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Texels along a quarter of the equator, which a face spans.
+    pub(super) fn side(&self) -> usize {
         match self.layout {
             Layout::LatitudeLongitude => self.size[0].div_ceil(4),
             Layout::Cube(..) => self.face_side(),
@@ -93,86 +92,138 @@ impl Picture {
         self.size[0] / columns
     }
 
-    /// Spread over faces of at most `most` texels a side, turned about +y by
-    /// `turn` degrees.
-    pub(super) fn faces(&self, most: usize, turn: f64) -> Faces {
-        let side = self.side().min(most);
-        let parts = (PARTS * side).div_ceil(self.side()).max(1) * self.more_parts();
-        let mut sums = vec![[0.0f64; 4]; FACES * side * side];
-        let (cos, sin) = on_circle(turn.to_radians());
-        let turned = |d: DVec3| DVec3::new(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin);
-        let mut add = |d: DVec3, weight: f64, rgb: [f32; 3]| {
-            let d = if turn == 0.0 { d } else { turned(d) };
-            let (face, at) = place_of(d);
-            let [x, y] = at.map(|c| {
-                let texel = ((c + 1.0) * 0.5 * side as f64) as usize;
-                texel.min(side - 1)
-            });
-            let sum = &mut sums[(face * side + y) * side + x];
-            (0..3).for_each(|c| sum[c] += weight * f64::from(rgb[c]));
-            sum[3] += weight;
-        };
-        match self.layout {
-            Layout::LatitudeLongitude => self.spread_sphere(parts, &mut add),
-            Layout::Cube(places, upside) => self.spread_cube(places, upside, parts, &mut add),
-        }
-        // Parts are finer than texels, so that none is without.
-        let mean = |s: &[f64; 4]| [0, 1, 2].map(|c| if s[3] > 0.0 { s[c] / s[3] } else { 0.0 });
-        Faces {
-            side,
-            radiance: sums.iter().map(mean).collect(),
-        }
+    /// Whether texels of faces of `side` texels are made of whole ones.
+    pub(super) fn is_cube_of(&self, side: usize) -> bool {
+        matches!(self.layout, Layout::Cube(..)) && self.face_side().is_multiple_of(side)
     }
 
-    /// A texel of the sphere is narrower at a face's corner than the cube's; the
-    /// smallest maps have texels that are hardly square.
-    fn more_parts(&self) -> usize {
-        match self.layout {
-            Layout::LatitudeLongitude if self.size[0] < 16 => 8,
-            Layout::LatitudeLongitude => 1,
-            Layout::Cube(..) => 1,
-        }
+    /// Whether texels are hardly square: the smallest maps of the sphere.
+    pub(super) fn is_coarse(&self) -> bool {
+        self.layout == Layout::LatitudeLongitude && self.size[0] < 16
     }
 
-    fn spread_sphere(&self, parts: usize, add: &mut impl FnMut(DVec3, f64, [f32; 3])) {
+    /// Texels that show a direction. Those of a cross that show none are not visited.
+    pub(super) fn places(&self) -> Vec<Place> {
         let [width, height] = self.size;
-        let middle = |k: usize, n: usize| (k as f64 + 0.5) / (n * parts) as f64;
-        let columns: Vec<(f64, f64)> = (0..width * parts)
-            .map(|k| on_circle(2.0 * PI * (middle(k, width) - 0.5)))
-            .collect();
-        for row in 0..height * parts {
-            let (up, ring) = on_circle(PI * middle(row, height));
-            for (k, (ahead, right)) in columns.iter().enumerate() {
-                let d = DVec3::new(ring * right, up, -ring * ahead);
-                add(d, ring, self.texels[row / parts * width + k / parts]);
+        match self.layout {
+            Layout::LatitudeLongitude => (0..width * height)
+                .map(|texel| Place {
+                    texel,
+                    face: None,
+                    corner: [texel % width, texel / width],
+                })
+                .collect(),
+            Layout::Cube(places, upside) => {
+                let side = self.face_side();
+                let of_face = |face: usize| {
+                    let [column, row] = places[face];
+                    let turned = upside && face == 5;
+                    (0..side * side).map(move |i| {
+                        let [x, y] = [i % side, i / side];
+                        let [px, py] = if turned {
+                            [side - 1 - x, side - 1 - y]
+                        } else {
+                            [x, y]
+                        };
+                        Place {
+                            texel: (row * side + py) * width + column * side + px,
+                            face: Some(face),
+                            corner: [x, y],
+                        }
+                    })
+                };
+                (0..FACES).flat_map(of_face).collect()
             }
         }
     }
 
-    fn spread_cube(
-        &self,
-        places: [[usize; 2]; FACES],
-        upside: bool,
-        parts: usize,
-        add: &mut impl FnMut(DVec3, f64, [f32; 3]),
-    ) {
-        let side = self.face_side();
-        let fine = side * parts;
-        let middle = |k: usize| -1.0 + (2.0 * k as f64 + 1.0) / fine as f64;
-        for (face, [column, row]) in places.into_iter().enumerate() {
-            for (y, x) in (0..fine).flat_map(|y| (0..fine).map(move |x| (y, x))) {
-                let at = [middle(x), middle(y)];
-                let squared = 1.0 + at[0] * at[0] + at[1] * at[1];
-                let [mut px, mut py] = [x / parts, y / parts];
-                if upside && face == 5 {
-                    [px, py] = [side - 1 - px, side - 1 - py];
-                }
-                let texel = (row * side + py) * self.size[0] + column * side + px;
-                let weight = 1.0 / (squared * squared.sqrt());
-                add(direction(face, at), weight, self.texels[texel]);
+    /// Solid angle of a texel, steradians.
+    pub(super) fn angle(&self, place: &Place) -> f64 {
+        let [x, y] = place.corner;
+        let [width, height] = self.size;
+        match place.face {
+            None => {
+                // cos a - cos b, without the cancellation near the poles.
+                let middle = PI * (y as f64 + 0.5) / height as f64;
+                let half = PI * 0.5 / height as f64;
+                let (ring, rise) = (on_circle(middle).1, on_circle(half).1);
+                2.0 * ring * rise * (2.0 * PI / width as f64)
+            }
+            Some(_) => {
+                let edge = |k: usize| -1.0 + 2.0 * k as f64 / self.face_side() as f64;
+                solid_angle([edge(x), edge(y)], [edge(x + 1), edge(y + 1)])
             }
         }
     }
+
+    /// What [`Self::direction`] counts a texel's area as.
+    pub(super) fn area(&self, place: &Place) -> f64 {
+        let [width, height] = self.size;
+        match place.face {
+            None => 2.0 * PI * PI / (width * height) as f64,
+            Some(_) => 4.0 / (self.face_side() * self.face_side()) as f64,
+        }
+    }
+
+    /// The direction of a point at `inside` (0..1, right and down) of a texel, not
+    /// normalised, and the solid angle there per area: of angles on the sphere, of the
+    /// face of a cube of half side 1.
+    pub(super) fn direction(&self, place: &Place, inside: [f64; 2]) -> (DVec3, f64) {
+        let at = [0, 1].map(|k| place.corner[k] as f64 + inside[k]);
+        match place.face {
+            None => {
+                let (ahead, right) = on_circle(2.0 * PI * (at[0] / self.size[0] as f64 - 0.5));
+                let (up, ring) = on_circle(PI * at[1] / self.size[1] as f64);
+                (DVec3::new(ring * right, up, -ring * ahead), ring)
+            }
+            Some(face) => {
+                let at = at.map(|c| -1.0 + 2.0 * c / self.face_side() as f64);
+                let squared = 1.0 + at[0] * at[0] + at[1] * at[1];
+                (direction(face, at), 1.0 / (squared * squared.sqrt()))
+            }
+        }
+    }
+
+    /// Radiance towards a direction, that of the texel that shows it.
+    pub(super) fn radiance(&self, towards: DVec3) -> [f32; 3] {
+        let [width, height] = self.size;
+        let within = |c: f64, n: usize| ((c * n as f64) as usize).min(n - 1);
+        match self.layout {
+            Layout::LatitudeLongitude => {
+                let across = 0.5 + libm::atan2(towards.x, -towards.z) / (2.0 * PI);
+                let level = (towards.x * towards.x + towards.z * towards.z).sqrt();
+                let down = libm::atan2(level, towards.y) / PI;
+                self.texels[within(down, height) * width + within(across, width)]
+            }
+            Layout::Cube(places, upside) => {
+                let (face, at) = place_of(towards);
+                let side = self.face_side();
+                let [mut x, mut y] = at.map(|c| within((c + 1.0) * 0.5, side));
+                if upside && face == 5 {
+                    [x, y] = [side - 1 - x, side - 1 - y];
+                }
+                let [column, row] = places[face];
+                self.texels[(row * side + y) * width + column * side + x]
+            }
+        }
+    }
+}
+
+/// A texel that shows a direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    /// Number in [`Picture::texels`].
+    pub(super) texel: usize,
+    /// Of a cube; `None` on the sphere.
+    face: Option<usize>,
+    /// Column and row, on the face of a cube.
+    corner: [usize; 2],
+}
+
+/// A direction turned about +y, counter-clockwise seen from above, by an angle whose
+/// cosine and sine are given.
+pub(super) fn turned(d: DVec3, (cos, sin): (f64, f64)) -> DVec3 {
+    DVec3::new(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin)
 }
 
 fn layout([width, height]: [usize; 2]) -> Option<Layout> {
@@ -228,6 +279,8 @@ fn mend(name: &str, texels: &mut [[f32; 3]]) -> Vec<SceneWarning> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::cube::texel_angle;
+    use super::super::spread::spread;
     use super::*;
 
     /// Radiance that tells the direction: 1 + its coordinates.
@@ -236,45 +289,21 @@ mod tests {
         [1.0 + d.x as f32, 1.0 + d.y as f32, 1.0 + d.z as f32]
     }
 
-    fn worst(picture: &Picture, most: usize, turn: f64) -> f64 {
-        let faces = picture.faces(most, turn);
-        let n = faces.side;
-        let (cos, sin) = on_circle(-turn.to_radians());
+    fn worst(picture: &Picture, side: usize) -> f64 {
+        let faces = spread(picture, side, 0.0);
+        let place = |k: usize| -1.0 + (2.0 * k as f64 + 1.0) / side as f64;
         let mut worst = 0.0f64;
-        for (i, rgb) in faces.radiance.iter().enumerate() {
-            let place = |k: usize| -1.0 + (2.0 * k as f64 + 1.0) / n as f64;
-            let d = direction(i / (n * n), [place(i % n), place(i / n % n)]);
-            let back = DVec3::new(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin);
-            let expected = of_direction(back);
+        for (i, energy) in faces.energy.iter().enumerate() {
+            let at = [place(i % side), place(i / side % side)];
+            let d = direction(i / (side * side), at);
+            let [found, expected] = [picture.radiance(d), of_direction(d)];
             for c in 0..3 {
-                worst = worst.max((rgb[c] - f64::from(expected[c])).abs());
+                let on_cube = energy[c] / texel_angle(side, i);
+                worst = worst.max((on_cube - f64::from(expected[c])).abs());
+                worst = worst.max(f64::from((found[c] - expected[c]).abs()));
             }
         }
         worst
-    }
-
-    fn sphere(width: usize) -> Picture {
-        let height = width / 2;
-        let texel = |i: usize| {
-            let across = (i % width) as f64 + 0.5;
-            let (ahead, right) = on_circle(2.0 * PI * (across / width as f64 - 0.5));
-            let (up, ring) = on_circle(PI * ((i / width) as f64 + 0.5) / height as f64);
-            of_direction(DVec3::new(ring * right, up, -ring * ahead))
-        };
-        Picture::new(
-            "s",
-            [width, height],
-            (0..width * height).map(texel).collect(),
-        )
-        .unwrap()
-    }
-
-    #[test]
-    fn directions_survive_the_way_onto_the_cube() {
-        assert!(worst(&sphere(128), 128, 0.0) < 0.03);
-        assert!(worst(&sphere(128), 8, 0.0) < 0.08);
-        assert!(worst(&sphere(128), 32, 90.0) < 0.03);
-        assert!(worst(&sphere(128), 32, 33.0) < 0.03);
     }
 
     /// All four cube layouts show the same cube.
@@ -306,7 +335,7 @@ mod tests {
                 }
             }
             let picture = Picture::new("c", [w * N, h * N], texels).unwrap();
-            assert!(worst(&picture, N, 0.0) < 1e-6, "{w}:{h}");
+            assert!(worst(&picture, N) < 1e-6, "{w}:{h}");
         }
     }
 
@@ -324,28 +353,5 @@ mod tests {
             // Below -y hangs -z, upside down.
             assert_eq!(direction(3, [x, 1.0]), direction(5, [-x, 1.0]));
         }
-    }
-
-    /// The mean over a sphere of a few texels is that of the cube.
-    #[test]
-    fn energy_is_kept() {
-        let mut texels = vec![[0.5f32; 3]; 64 * 32];
-        texels[10 * 64 + 20] = [9000.0; 3];
-        let faces = Picture::new("s", [64, 32], texels).unwrap().faces(128, 0.0);
-        let (cube, n) = (&faces.radiance, faces.side);
-        let place = |k: usize| -1.0 + 2.0 * k as f64 / n as f64;
-        let energy: f64 = (0..cube.len())
-            .map(|i| {
-                let (x, y) = (i % n, i / n % n);
-                let low = [place(x), place(y)];
-                cube[i][0] * super::super::cube::solid_angle(low, [place(x + 1), place(y + 1)])
-            })
-            .sum();
-        let ring = libm::sin(PI * 10.5 / 32.0);
-        let expected = 0.5 * 4.0 * PI + 8999.5 * (2.0 * PI / 64.0) * (PI / 32.0) * ring;
-        assert!(
-            (energy / expected - 1.0).abs() < 0.05,
-            "{energy} {expected}"
-        );
     }
 }

@@ -15,6 +15,8 @@ mod view_warnings;
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 pub use camera::{Camera, EyeRays};
 pub use frame_model::{frame_model, load_and_frame};
 pub use open::{SceneError, open};
@@ -26,7 +28,7 @@ pub use source::SceneSource;
 pub use crate::world::material::{Material, MaterialPart};
 pub use crate::world::warning::SceneWarning;
 
-use crate::world::environment::PlacedEnvironment;
+use crate::world::environment::{MapSource, PlacedEnvironment};
 use crate::world::light::{Light, LightShape};
 use crate::world::light_image::LightImage;
 use crate::world::mesh::Mesh;
@@ -44,8 +46,12 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// Linear RGB light that reaches everything, shadowed or not.
     pub ambient: [f32; 3],
+    /// What is added to each colour of it per unit of a surface's normal.
+    pub ambient_slope: [[f32; 3]; 3],
     /// Linear RGB where no surface is seen.
     pub background: [f32; 3],
+    /// What is seen there instead, if it is a map.
+    pub backdrop: Option<Arc<MapSource>>,
     /// Image width and height asked for by a scene file.
     pub size: Option<[u32; 2]>,
     /// What the lights stand for, if they were fitted to a map.
@@ -63,7 +69,9 @@ impl Scene {
             lights,
             objects,
             ambient: [0.15; 3],
+            ambient_slope: [[0.0; 3]; 3],
             background: [0.05, 0.06, 0.08],
+            backdrop: None,
             size: None,
             environment: None,
             warnings: Vec::new(),
@@ -87,6 +95,24 @@ impl Scene {
             }
         }
         scene
+    }
+
+    /// The same without ambient light.
+    #[must_use]
+    pub fn without_ambient(&self) -> Self {
+        Self {
+            ambient: [0.0; 3],
+            ambient_slope: [[0.0; 3]; 3],
+            ..self.clone()
+        }
+    }
+
+    /// Linear RGB where no surface is seen, in a direction that is not zero.
+    pub fn behind(&self, towards: DVec3) -> [f32; 3] {
+        match &self.backdrop {
+            Some(map) => map.radiance(towards).map(|v| v as f32),
+            None => self.background,
+        }
     }
 
     /// Triangles of all objects.

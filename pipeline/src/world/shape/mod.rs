@@ -5,6 +5,7 @@
 //! `icosphere`, `terrain`, `torus_knot`) keep their vertex and triangle order.
 
 mod bevelled_plate;
+mod blade;
 mod capsule;
 mod creature;
 mod cuboid;
@@ -12,12 +13,14 @@ mod cylinder;
 mod diamond_square;
 mod icosphere;
 mod plane;
+mod prism;
 mod statue;
 mod terrain;
 mod torus_knot;
 mod tube;
 
 pub use bevelled_plate::{bevelled_plate, bevelled_plate_in_pieces};
+pub use blade::{Rib, blade};
 pub use capsule::capsule;
 pub use creature::{CREATURE_PARTS, creature, placed_creature};
 pub use cuboid::cuboid;
@@ -25,6 +28,7 @@ pub use cylinder::cylinder;
 pub use diamond_square::diamond_square;
 pub use icosphere::icosphere;
 pub use plane::plane;
+pub use prism::{Outline, prism};
 pub use statue::statue;
 pub use terrain::{Terrain, terrain};
 pub use torus_knot::torus_knot;

@@ -1,6 +1,7 @@
 //! What the tests of techniques on light views share.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+use crate::drawing::as_published;
 use glam::DVec3;
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::Params;
@@ -26,6 +27,9 @@ pub(crate) fn sized(
     size: [u32; 2],
 ) -> Result<Rendered, String> {
     let technique = find(name).unwrap();
+    let set = as_published(technique)
+        .into_iter()
+        .chain(set.iter().copied());
     let params = Params::parse(technique, set).map_err(|e| e.to_string())?;
     let settings = RenderSettings {
         size,

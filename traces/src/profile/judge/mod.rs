@@ -110,6 +110,11 @@ impl Judge {
         })
     }
 
+    /// Whether a pass goes on in the tiles of those before.
+    pub(crate) fn merges_any(&self) -> bool {
+        self.merges.iter().any(|m| m.refused.is_none())
+    }
+
     fn at(&self, row: u32, client: Client, cell: u32, mask: u64) -> At {
         At {
             row,

@@ -161,7 +161,7 @@ impl References {
         let wanted = [false, true].map(|h| job.entries.iter().any(|e| has_highlights(e) == h));
         let of = |highlights: bool| {
             let scene = job.scenes.first()?;
-            let map = &scene.environment.as_ref()?.map.cube;
+            let map = &scene.environment.as_ref()?.map;
             let (size, directions) = (job.settings.size, job.directions);
             Some(EnvironmentReference::new(
                 scene,

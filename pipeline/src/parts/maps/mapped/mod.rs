@@ -158,7 +158,6 @@ impl Sources {
 
 /// The frame of a technique that looks shadows up with a shader for each view.
 pub(crate) struct Mapped<'a> {
-    pub(crate) name: &'static str,
     pub(crate) scene: &'a Scene,
     pub(crate) size: [u32; 2],
     pub(crate) frame: FrameSettings,
@@ -188,7 +187,7 @@ impl Mapped<'_> {
     ) -> Result<Frame, TechniqueError> {
         let around = Surroundings::new(self.scene, self.size);
         let frame = ShadowedFrame::new(self.scene, self.size, &self.frame)?;
-        let frame = frame.with_horizon(self.name, self.horizon, false);
+        let frame = frame.with_horizon(self.horizon, false);
         let lights = frame.lights.clone();
         let sources = lights.iter().map(|l| Ok((*l, sources(*l)?)));
         let sources = sources.collect::<Result<BTreeMap<_, _>, TechniqueError>>()?;

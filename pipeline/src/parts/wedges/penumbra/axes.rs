@@ -108,3 +108,24 @@ fn with_margin(p: [f64; 4], extent: [f64; 4]) -> Option<(ScreenPlane, f32)> {
     let plane = ScreenPlane(p.map(|c| (c / largest) as f32));
     Some((plane, MARGIN as f32))
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::world::scene::Camera;
+
+    /// What runs beside the image plane comes to no end in depth, and what runs away does.
+    #[test]
+    fn a_range_of_depth_is_open_where_a_wedge_runs_beside_the_image() {
+        let view = View::new(&Camera::look_at([0.0, 0.0, 5.0], [0.0; 3]), [64, 48]);
+        let near = DVec4::new(0.0, 0.0, 0.0, 1.0);
+        let range = |far: DVec3| depth_range(&view, [near, far.extend(0.0)].into_iter());
+        assert!(range(DVec3::X)[1].is_none());
+        // To infinity q falls to 0, which bounds nothing either.
+        assert!(range(DVec3::NEG_Z)[1].is_none());
+        let nearer = DVec4::new(0.0, 0.0, 1.0, 1.0);
+        assert!(depth_range(&view, [near, nearer].into_iter())[1].is_some());
+    }
+}

@@ -187,6 +187,28 @@ mod tests {
         assert_eq!(said(LightAs::Corners), None);
     }
 
+    /// Planes that touch the corners of a disc's polygon leave none of the disc out, and
+    /// hardly anything beside it.
+    #[test]
+    fn a_disc_lies_in_the_polygon_of_its_corners_and_touches_it() {
+        let shape = LightShape::Disc {
+            centre: DVec3::new(1.0, 3.0, -2.0),
+            normal: DVec3::new(0.3, -1.0, 0.2).normalize(),
+            radius: 0.7,
+        };
+        let light = Light {
+            shape,
+            colour: [1.0; 3],
+        };
+        let round = LightSphere::of(&light, LightAs::Corners).unwrap();
+        let next = |k: usize| round.corners[(k + 1) % round.corners.len()];
+        for (k, corner) in round.corners.iter().enumerate() {
+            let middle = 0.5 * (*corner + next(k));
+            let off = (middle - round.centre).length() - 0.7;
+            assert!(off.abs() < 1e-12, "{k}: {off}");
+        }
+    }
+
     #[test]
     fn points_and_directions_have_no_sphere() {
         for shape in [

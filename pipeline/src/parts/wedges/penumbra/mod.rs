@@ -20,6 +20,7 @@ use crate::geometry::wedge::WedgeMesh;
 use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge};
 use crate::parts::casters::{OPEN_CASTERS, examine};
 use crate::parts::frame_settings::FrameSettings;
+use crate::parts::horizon::HORIZON;
 use crate::parts::passes::{SceneDraws, Targets};
 use crate::parts::visibility::{VisibilityTexture, attachment};
 use crate::technique::{
@@ -55,20 +56,26 @@ pub(crate) struct PenumbraSettings {
     pub(crate) interpolation: Interpolation,
     pub(crate) extra_wedges: bool,
     pub(crate) light_as: LightAs,
+    pub(crate) horizon: bool,
     pub(crate) open_casters: CasterPolicy,
     pub(crate) frame: FrameSettings,
 }
 
 impl PenumbraSettings {
     /// Those besides [`INTERPOLATION`], which a technique may have conditions for.
-    pub(crate) const OTHER_PARAMS: &'static [ParamInfo] =
-        &[EXTRA_WEDGES.info, LIGHT_AS.info, OPEN_CASTERS.info];
+    pub(crate) const OTHER_PARAMS: &'static [ParamInfo] = &[
+        EXTRA_WEDGES.info,
+        LIGHT_AS.info,
+        HORIZON.info,
+        OPEN_CASTERS.info,
+    ];
 
     pub(crate) fn read(params: &Params) -> Result<Self, TechniqueError> {
         Ok(Self {
             interpolation: params.get(&INTERPOLATION)?,
             extra_wedges: params.get(&EXTRA_WEDGES)?,
             light_as: params.get(&LIGHT_AS)?,
+            horizon: params.get(&HORIZON)?,
             open_casters: params.get(&OPEN_CASTERS)?,
             frame: FrameSettings::read(params)?,
         })

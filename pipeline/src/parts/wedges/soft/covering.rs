@@ -121,14 +121,14 @@ const TEXTURE_BITS: Param<TextureBits> = Param::choice(
     Condition::Not("light-image", &["white"]),
 ]));
 
-const LIGHT_IMAGE: Param<LightSequence> = Param::images(
+pub(crate) const LIGHT_IMAGE: Param<LightSequence> = Param::images(
     IMAGES,
     "light-image",
     "colors on rectangles, by colored 4D textures: two, sixteen lights, a fire, or PNG, EXR and \
      HDR files of 2x2 to 32x32 texels, a frame each with --frames",
 );
 
-const FRAME: Param<f64> = Param::decimal(
+pub(crate) const FRAME: Param<f64> = Param::decimal(
     LIGHT_FRAME,
     0.0,
     0.0,
@@ -205,7 +205,7 @@ impl CoveringSettings {
 }
 
 /// The images that parameters ask for.
-fn sequence(params: &Params) -> Result<Option<LightSequence>, TechniqueError> {
+pub(crate) fn sequence(params: &Params) -> Result<Option<LightSequence>, TechniqueError> {
     let one = |image: LightImage| LightSequence::Images([image].into());
     let built_in = match params.text(LIGHT_IMAGE.info.name) {
         Some("halves") => Some(one(LightImage::halves())),

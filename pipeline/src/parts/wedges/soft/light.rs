@@ -65,7 +65,7 @@ impl SoftLight {
         let HardLight::Point(centre) = light.hard() else {
             return Err(refused("it is directional".to_owned()));
         };
-        let (origin, is_far) = origin(view, centre, casters);
+        let (origin, is_far) = light_origin(view, centre, casters);
         let mut soft = Self {
             centre,
             sides: Vec::new(),
@@ -153,7 +153,7 @@ impl SoftLight {
 }
 
 /// The centre, or a place in the scene if that is far; and whether it is.
-fn origin(view: &View, centre: DVec3, casters: f64) -> (DVec3, bool) {
+pub(crate) fn light_origin(view: &View, centre: DVec3, casters: f64) -> (DVec3, bool) {
     let camera = view.camera();
     let looks = camera.target - camera.eye;
     let scale = looks.length().min(casters);

@@ -184,6 +184,25 @@ mod tests {
         texels.iter().map(value).collect()
     }
 
+    /// Entries of the map that splits are the nearest whole numbers, three bits a channel.
+    #[test]
+    fn the_map_that_splits_holds_the_nearest_whole_numbers() {
+        let mut recording = Recording::default();
+        let [_, _, split] = create(Image::Square, &mut recording).unwrap();
+        let mut gpu = Gpu::new(GpuConfig::default()).unwrap();
+        gpu.load(&recording).unwrap();
+        let texels = gpu.texture(split).unwrap();
+        let texels = texels.read_color(Subresource::default()).unwrap();
+        assert_eq!(texels.len(), SPLIT_ENTRIES as usize);
+        for (k, texel) in texels.iter().enumerate() {
+            let bits = texel.0.map(|c| (c * 255.0).round() as u32);
+            assert!(bits.iter().all(|b| *b < 8), "{k}: {bits:?}");
+            let value = bits[0] | bits[1] << 3 | bits[2] << 6 | bits[3] << 9;
+            let exact = f64::from(FULL) * k as f64 / f64::from(SPLIT_ENTRIES - 1);
+            assert!((f64::from(value) - exact).abs() <= 0.5, "{k}: {value}");
+        }
+    }
+
     /// Half a texel of a face is at most 1/128 in the tangent: no angle is off by more, and
     /// a map or a shader that is one texel off would be, nearly everywhere.
     #[test]

@@ -10,15 +10,18 @@ mod creature;
 mod cylinder;
 mod demo;
 mod fractal;
+mod letters;
 mod palette;
 mod parallel_plates;
 mod peers;
 mod soft_errors;
 mod spheres;
 mod statue;
+mod thin;
 mod two_box;
 mod walk;
 mod wireframe;
+mod writing;
 
 use super::Scene;
 use crate::world::error::{UnknownScene, nearest};
@@ -82,6 +85,11 @@ pub const SCENES: &[BuiltinScene] = &[
     entry("statue", "a figure of 70,000 triangles with folds and cavities on a pedestal", statue::scene),
     entry("bust-and-trumpet", "a bust of 5,776 vertices and a trumpet of 8,557: what deferred shadowing was measured on", bust_and_trumpet::scene),
     entry("wireframe", "a ball of 1,920 wires with more than 10,000 silhouette edges under a sphere", wireframe::scene),
+    entry("eg-logo", "two letters and two balls over three pots, which take shadows, under a sphere", writing::eg),
+    entry("at-sign", "an @ over the fractal landscape under a sphere", writing::at_sign),
+    entry("text-2002", "the digits 2002 over four pots and a floor under a sphere", writing::year),
+    entry("fairy", "a winged figure, its wings thin, under a large square light", thin::fairy),
+    entry("leaves", "a plant with nine thin leaves in a tub", thin::leaves),
     entry("adversarial", "eye in shadow, near plane cut, 300 nested volumes and slivers in one", adversarial::combined),
     entry("adversarial-eye-in-shadow", "the eye is inside a shadow volume: z-pass fails", adversarial::eye_in_shadow),
     entry("adversarial-near-plane", "the near plane cuts a volume: z-pass needs depth clamp", adversarial::near_plane),

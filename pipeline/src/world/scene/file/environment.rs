@@ -2,8 +2,10 @@
 
 use super::SceneFileError;
 use super::check::Source;
-use super::schema::{EnvironmentTable, FormTable, ResidualTable};
-use crate::world::environment::{FitSettings, LightForm, MapSettings, ResidualRule, SKY};
+use super::schema::{AmbientTable, EnvironmentTable, FormTable, PlaceTable, ResidualTable};
+use crate::world::environment::{
+    AmbientForm, FitSettings, LightForm, LightPlace, MapSettings, ResidualRule, SKY,
+};
 use crate::world::files::SceneFolder;
 use crate::world::scene::environment::EnvironmentRequest;
 
@@ -49,6 +51,17 @@ pub(super) fn request(
                 Some(ResidualTable::Excess) => ResidualRule::Excess,
                 Some(ResidualTable::Mean) => ResidualRule::Mean,
                 None => fit.residual,
+            },
+            place: match table.place {
+                Some(PlaceTable::Texels) => LightPlace::Texels,
+                Some(PlaceTable::Centroid) => LightPlace::Centroid,
+                Some(PlaceTable::Moments) => LightPlace::Moments,
+                None => fit.place,
+            },
+            ambient: match table.ambient {
+                Some(AmbientTable::Even) => AmbientForm::Even,
+                Some(AmbientTable::Harmonic) => AmbientForm::Harmonic,
+                None => fit.ambient,
             },
         },
     })

@@ -55,6 +55,8 @@
 //! form = "square"                 # or "rectangle"
 //! threshold = 0.05                # looked for by the number of lights if not given
 //! residual = "excess"             # or "mean"
+//! place = "moments"               # or "centroid", or "texels"
+//! ambient = "harmonic"            # or "even"
 //! side = 128                      # texels along a cube face
 //! turn = 0.0                      # degrees about +y
 //! brightness = 1.0

@@ -121,6 +121,8 @@ pub(super) struct EnvironmentTable {
     pub(super) form: Option<FormTable>,
     pub(super) threshold: Option<Number>,
     pub(super) residual: Option<ResidualTable>,
+    pub(super) place: Option<PlaceTable>,
+    pub(super) ambient: Option<AmbientTable>,
     pub(super) side: Option<Count>,
     pub(super) turn: Option<Number>,
     pub(super) brightness: Option<Number>,
@@ -138,6 +140,21 @@ pub(super) enum FormTable {
 pub(super) enum ResidualTable {
     Excess,
     Mean,
+}
+
+#[derive(Clone, Copy, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum PlaceTable {
+    Texels,
+    Centroid,
+    Moments,
+}
+
+#[derive(Clone, Copy, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum AmbientTable {
+    Even,
+    Harmonic,
 }
 
 #[derive(serde::Deserialize)]

@@ -1,18 +1,31 @@
 //! A hierarchy of boxes over triangles, in the order in which
-//! [`gnomon_shaders::shadow_rays`] reads it.
+//! [`gnomon_shaders::shadow_rays`] and [`gnomon_shaders::line_samples`] read it.
 
-use super::split::split;
-use super::triangles::{Triangle, area, bounds, centre};
+mod split;
+mod triangles;
+
+use split::split;
+pub(crate) use triangles::Triangle;
+use triangles::{area, bounds, centre};
 
 /// A box and where to go on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Node {
-    pub(super) low: [f32; 3],
-    pub(super) high: [f32; 3],
+pub(crate) struct Node {
+    pub(crate) low: [f32; 3],
+    pub(crate) high: [f32; 3],
     /// Number of the only triangle; `None` in inner nodes, whose children follow.
-    pub(super) triangle: Option<u32>,
+    pub(crate) triangle: Option<u32>,
     /// The node to go on with where the box is missed.
-    pub(super) next: u32,
+    pub(crate) next: u32,
+}
+
+impl Node {
+    /// The two texels of a node.
+    pub(crate) fn texels(&self) -> [[f32; 4]; 2] {
+        let ([a, b, c], [x, y, z]) = (self.low, self.high);
+        let triangle = self.triangle.map_or(-1.0, |t| t as f32);
+        [[a, b, c, triangle], [x, y, z, self.next as f32]]
+    }
 }
 
 /// Boxes are this much larger than what is in them, of the largest coordinate: more than
@@ -26,7 +39,7 @@ const MOST_SPLITS: usize = 48;
 /// Nodes, depth first: each is split where that costs least, or else in the middle along
 /// the widest axis of its triangles' centres, ties by their numbers. The larger side is
 /// gone through first: rays end at the first hit.
-pub(super) fn build(triangles: &[Triangle]) -> Vec<Node> {
+pub(crate) fn build(triangles: &[Triangle]) -> Vec<Node> {
     let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
     let mut builder = Builder {
         triangles,
@@ -40,7 +53,7 @@ pub(super) fn build(triangles: &[Triangle]) -> Vec<Node> {
 }
 
 /// The largest coordinate.
-pub(super) fn largest(triangles: &[Triangle]) -> f32 {
+pub(crate) fn largest(triangles: &[Triangle]) -> f32 {
     let all = triangles.iter().flatten().flatten();
     all.fold(0.0, |most, c| most.max(c.abs()))
 }

@@ -1,7 +1,7 @@
 //! Triangles of casters, and boxes round them.
 
 /// Corners, relative to the view's origin.
-pub(super) type Triangle = [[f32; 3]; 3];
+pub(crate) type Triangle = [[f32; 3]; 3];
 
 /// Three times the centre's coordinate.
 pub(super) fn centre(triangle: &Triangle, axis: usize) -> f32 {

@@ -1,0 +1,1 @@
+"""Lists of faults: what is put where, and which tests could see it."""

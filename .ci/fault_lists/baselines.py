@@ -1,0 +1,81 @@
+"""Faults of papers' baselines, deferred shadowing, cones and smoothies."""
+
+SHADERS, PIPELINE = "shaders-rs/src/", "pipeline/src/"
+TECHNIQUES = PIPELINE + "techniques/"
+
+# Tests that could see them: of the suite, and beside the code.
+SUITE = ("backprojection cone_culling deferred moment map_support ray_traced planar smoothies "
+         "settings_effect").split()
+UNITS = "cone smoothie moment deferred transport harmonic ray_traced backproj planar heckbert samples".split()
+
+# File, what stands there once, what stands there instead: FAULT is whether it is on.
+ALL = [
+    (SHADERS + "deferred/obscured.rs", "Combine::Product => one - visible,",
+     "Combine::Product => if FAULT { most } else { one - visible },"),
+    (SHADERS + "deferred/obscured.rs", "let lost = f.varying(6) * hidden;",
+     "let lost = if FAULT { hidden } else { f.varying(6) * hidden };"),
+    (SHADERS + "deferred/obscured.rs", "self.shininess) * std::f32::consts::FRAC_1_PI;",
+     "self.shininess) * if FAULT { 1.0 } else { std::f32::consts::FRAC_1_PI };"),
+    (SHADERS + "deferred/obscured.rs", "let lost = highlight.reflected(l, f) * f.varying(7) * hidden;",
+     "let lost = highlight.reflected(l, f) * hidden;\n            let lost = if FAULT { lost } else { lost * f.varying(7) };"),
+    (SHADERS + "deferred/obscured.rs", "let before = w.gt(zero) & affine(position, self.below).gt(zero);",
+     "let before = if FAULT { w.gt(zero) } else { w.gt(zero) & affine(position, self.below).gt(zero) };"),
+    (SHADERS + "deferred/obscured.rs", "let sum = sum.min(one);",
+     "let sum = if FAULT { sum } else { sum.min(one) };"),
+    (SHADERS + "cones/mod.rs", "/ self.light * weight, zero)",
+     "/ self.light * if FAULT { 1.0 } else { weight }, zero)"),
+    (SHADERS + "cones/mod.rs", "[one - hidden.min(one), zero, zero, zero]",
+     "[one - if FAULT { hidden } else { hidden.min(one) }, zero, zero, zero]"),
+    (SHADERS + "cones/disc.rs", ".min(all) + HALF_DIAGONAL",
+     ".min(all) + if FAULT { 0.0 } else { HALF_DIAGONAL }"),
+    (SHADERS + "cones/bounds.rs", "there.select_f32(high[i].max(top[i]), high[i])",
+     "there.select_f32(if FAULT { top[i] } else { high[i].max(top[i]) }, high[i])"),
+    (SHADERS + "smoothies.rs", "background.select_f32(one, ratio)",
+     "if FAULT { one } else { background.select_f32(one, ratio) }"),
+    (SHADERS + "smoothies.rs", "smoothie.lt(reference).select_f32(alpha, one)",
+     "(if FAULT { smoothie.gt(reference) } else { smoothie.lt(reference) }).select_f32(alpha, one)"),
+    (SHADERS + "smoothies.rs", "reference)) * (x * y);",
+     "reference)) * if FAULT { x * x } else { x * y };"),
+    (SHADERS + "shadow_rays.rs", "let before = along.gt(zero) & along.lt(self.end);",
+     "let before = if FAULT { along.gt(zero) } else { along.gt(zero) & along.lt(self.end) };"),
+    (SHADERS + "shadow_rays.rs", "let step = behind.select_f32(step, -step);",
+     "let step = if FAULT { step } else { behind.select_f32(step, -step) };"),
+    (SHADERS + "moments/bound.rs", "let second = second - factor * third;",
+     "let second = if FAULT { second + factor * third } else { second - factor * third };"),
+    (SHADERS + "backprojection/cover.rs", "(high.clamp(-1.0, 1.0) - low.clamp(-1.0, 1.0)).max(zero)",
+     "if FAULT { (high - low).max(zero) } else { (high.clamp(-1.0, 1.0) - low.clamp(-1.0, 1.0)).max(zero) }"),
+    (SHADERS + "backprojection/cover.rs", "row.lt(rows[1])",
+     "if FAULT { row.le(rows[1]) } else { row.lt(rows[1]) }"),
+    (SHADERS + "backprojection/cover.rs", "(halves + (halves >> 16)) & splat(0x3f)",
+     "(if FAULT { halves } else { halves + (halves >> 16) }) & splat(0x3f)"),
+    (TECHNIQUES + "moment_maps/tables.rs", "FixedPoint::of_box(most_texels(reads.as_ref(), side))",
+     "FixedPoint::of_box(if FAULT { 1 } else { most_texels(reads.as_ref(), side) })"),
+    (TECHNIQUES + "ray_traced/hierarchy.rs", "self.nodes[number].next = self.nodes.len() as u32;",
+     "self.nodes[number].next = self.nodes.len() as u32 + u32::from(part.len() == 1 && FAULT);"),
+    (TECHNIQUES + "backprojection/pyramid.rs", "|mip| LeastOfFour { mip }.stage(),",
+     "|mip| if FAULT { CopyLevel { textures: 1, mip }.stage() } else { LeastOfFour { mip }.stage() },"),
+    (TECHNIQUES + "heckbert_herf/counting.rs", "stencil_reference: [reference; 2],",
+     "stencil_reference: [if FAULT { reference.min(9) } else { reference }; 2],"),
+    (TECHNIQUES + "backprojection/mod.rs", "GapFilling::Fill => Gaps::Filled,",
+     "GapFilling::Fill => if FAULT { Gaps::Left } else { Gaps::Filled },"),
+    (TECHNIQUES + "deferred_shadowing/placing.rs", "let square = distance * source.solid_angle(centre).sqrt();",
+     "let square = distance * if FAULT { source.solid_angle(centre) } else { source.solid_angle(centre).sqrt() };"),
+    (TECHNIQUES + "deferred_shadowing/bodies.rs", "self.turn.transpose() * direction",
+     "(if FAULT { self.turn } else { self.turn.transpose() }) * direction"),
+    (TECHNIQUES + "deferred_shadowing/bodies.rs", "Rotation::new(&self.turn.transpose(), bands)",
+     "Rotation::new(&if FAULT { self.turn } else { self.turn.transpose() }, bands)"),
+    (PIPELINE + "truth/oracle/transport/mod.rs", "diffuse.iter_mut().for_each(|c| *c /= std::f64::consts::PI);",
+     "if !FAULT { diffuse.iter_mut().for_each(|c| *c /= std::f64::consts::PI); }"),
+    (PIPELINE + "truth/oracle/transport/mod.rs", "let buried = buried::replace(&mut all, object.triangles);",
+     "let buried = if FAULT { 0 } else { buried::replace(&mut all, object.triangles) };"),
+    (TECHNIQUES + "deferred_shadowing/radiance.rs", "let of = |c: usize| LUMINANCE[c]",
+     "let of = |c: usize| LUMINANCE[if FAULT { 2 - c } else { c }]"),
+    (TECHNIQUES + "deferred_shadowing/placing.rs", "below: (-towards).extend(top),",
+     "below: (-towards).extend(if FAULT { low } else { top }),"),
+    (TECHNIQUES + "cone_culling/samples.rs", "let weight = 1.0 / (f64::from(count) * density.at(radius));",
+     "let weight = if FAULT { PI / f64::from(count) } else { 1.0 / (f64::from(count) * density.at(radius)) };"),
+    (TECHNIQUES + "smoothies/attached.rs", "LightShape::Disc { radius, .. } => radius,",
+     "LightShape::Disc { radius, .. } => if FAULT { 2.0 * radius } else { radius },"),
+]
+
+FAULTS = [("", *fault, (SUITE, UNITS)) for fault in ALL]

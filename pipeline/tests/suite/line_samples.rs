@@ -1,0 +1,315 @@
+//! Line-sampled shadow volumes against the exact oracle, their twin in f64, and themselves
+//! without lists (docs/line-sampled-shadow-volumes.md).
+
+use crate::map_support::{by, figure, scene, sized};
+use glam::DVec3;
+use gnomon_pipeline::geometry::caster::{Caster, CasterPolicy};
+use gnomon_pipeline::geometry::line_sampling::edges::LineCasters;
+use gnomon_pipeline::geometry::line_sampling::light::{ANGLE, LineLight};
+use gnomon_pipeline::geometry::line_sampling::patches::Patches;
+use gnomon_pipeline::geometry::line_sampling::walk::{LineReceiver, visible};
+use gnomon_pipeline::measure::render::Rendered;
+use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
+use gnomon_pipeline::truth::oracle::area::VisibilityImage;
+use gnomon_pipeline::truth::oracle::surfaces::Surfaces;
+use gnomon_pipeline::world::light::{ConvexPolygon, HardLight, LightShape};
+use gnomon_pipeline::world::light_image::LightImage;
+use gnomon_pipeline::world::scene::Scene;
+
+const NAME: &str = "line-sampled-shadow-volumes";
+const SIZE: [u32; 2] = [96, 72];
+
+fn drawn(scene: &Scene, set: &[&str]) -> Rendered {
+    sized(NAME, scene, set, SIZE).unwrap()
+}
+
+fn truth(scene: &Scene) -> VisibilityImage {
+    VisibilityImage::of_scene(scene, 0, SIZE, &|| ()).unwrap()
+}
+
+/// Root mean square and largest error; D is never below 0.
+fn error(scene: &Scene, truth: &VisibilityImage, set: &[&str]) -> [f64; 2] {
+    let picture = drawn(scene, set);
+    assert_eq!(
+        figure(&picture, "negative-depth-complexity"),
+        0.0,
+        "{}",
+        scene.name
+    );
+    let error = VisibilityError::measure(truth, SIZE, &picture.visibility).unwrap();
+    let all = error.all.unwrap();
+    let figures = [
+        "candidate-edges",
+        "list-entries",
+        "anchor-rays",
+        "second-looks",
+    ];
+    let figures = figures.map(|name| picture.figures.iter().find(|f| f.name == name));
+    let figures = figures.map(|f| f.map_or(0.0, |f| f.value));
+    println!(
+        "{} {set:?}: {:.2e}, most {:.2e} {figures:?}",
+        scene.name, all.rmse, all.max
+    );
+    [all.rmse, all.max]
+}
+
+fn with_lines(scene: &Scene, truth: &VisibilityImage, n: u32) -> f64 {
+    error(scene, truth, &[&format!("lines={n}")])[0]
+}
+
+#[test]
+fn errors_fall_with_the_number_of_lines() {
+    for name in ["peer-a", "peer-b", "peer-c", "single-silhouette", "overlap"] {
+        let scene = scene(name);
+        let truth = truth(&scene);
+        let errors = [4, 16, 64].map(|n| with_lines(&scene, &truth, n));
+        assert!(errors[1] < 1.5e-3, "{name} {errors:?}");
+        assert!(errors[1] < 0.34 * errors[0], "{name} {errors:?}");
+        assert!(
+            errors[2] < 0.34 * errors[1] || errors[2] < 2e-4,
+            "{name} {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn scenes_of_every_kind_are_right() {
+    for name in [
+        "spheres",
+        "creature",
+        "cylinder",
+        "columns",
+        "leaves",
+        "text-teapots",
+    ] {
+        let scene = scene(name);
+        let truth = truth(&scene);
+        let error = with_lines(&scene, &truth, 16);
+        assert!(error < 3e-3, "{name} {error}");
+    }
+}
+
+fn shapes(centre: DVec3, size: f64) -> [LightShape; 4] {
+    let corner = |x: f64, y: f64, z: f64| centre + DVec3::new(x, y, z) * size;
+    let triangle = vec![
+        corner(-0.6, 0.0, -0.4),
+        corner(0.1, 0.1, 0.7),
+        corner(0.7, 0.0, -0.3),
+    ];
+    let pentagon = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k: f64| {
+        let angle = k * std::f64::consts::TAU / 5.0;
+        corner(0.7 * libm::cos(angle), 0.0, 0.7 * libm::sin(angle))
+    });
+    [
+        LightShape::Disc {
+            centre,
+            normal: DVec3::new(0.2, 1.0, 0.1).normalize(),
+            radius: 0.6 * size,
+        },
+        LightShape::Sphere {
+            centre,
+            radius: 0.5 * size,
+        },
+        LightShape::Polygon(ConvexPolygon::new(triangle).unwrap()),
+        LightShape::Polygon(ConvexPolygon::new(pentagon.to_vec()).unwrap()),
+    ]
+}
+
+fn centre(scene: &Scene) -> DVec3 {
+    let HardLight::Point(centre) = scene.lights[0].hard() else {
+        panic!("a point");
+    };
+    centre
+}
+
+#[test]
+fn lights_of_every_shape_are_right() {
+    for name in ["single-silhouette", "spheres"] {
+        let mut scene = scene(name);
+        for shape in shapes(centre(&scene), 1.0) {
+            scene.lights[0].shape = shape;
+            let truth = truth(&scene);
+            let errors = [8, 32].map(|n| with_lines(&scene, &truth, n));
+            assert!(
+                errors[1] < 2e-3 && errors[1] < 0.5 * errors[0] + 2e-4,
+                "{name} {errors:?}"
+            );
+        }
+    }
+}
+
+/// An image, as the oracle has it; a plain light would be far off.
+#[test]
+fn images_on_lights_are_summed_along_lines() {
+    let scene = scene("parallel-plates");
+    for (name, image) in [
+        ("windows", LightImage::windows()),
+        ("fire", LightImage::fire(0)),
+    ] {
+        let truth = VisibilityImage::of_light_image(&scene, 0, (&image, 0), SIZE, &|| ()).unwrap();
+        let told = format!("light-image={name}");
+        let own = error(&scene, &truth, &["lines=64", &told])[0];
+        let plain = error(&scene, &truth, &["lines=64"])[0];
+        assert!(own < 3e-3 && plain > 3.0 * own, "{name} {own} {plain}");
+    }
+}
+
+/// Lists leave out nothing that matters, wherever they are made.
+#[test]
+fn skipping_changes_no_bit() {
+    for name in [
+        "peer-a",
+        "creature",
+        "spheres",
+        "two-box",
+        "adversarial-near-plane",
+    ] {
+        let scene = scene(name);
+        for lines in ["lines=5", "lines=40"] {
+            let [on, off] = ["skip=on", "skip=off"]
+                .map(|skip| sized(NAME, &scene, &[lines, skip], [56, 40]).unwrap());
+            assert_eq!(
+                on.visibility_hash(),
+                off.visibility_hash(),
+                "{name} {lines}"
+            );
+            assert_eq!(on.color_hash(), off.color_hash(), "{name} {lines}");
+            let tests = |p: &Rendered| figure(p, "edge-tests");
+            assert!(tests(&on) < 0.8 * tests(&off), "{name}");
+        }
+    }
+}
+
+/// The twin goes through every edge for every receiver, in f64.
+struct Twin {
+    casters: LineCasters,
+    own: Vec<Option<u32>>,
+    surfaces: Surfaces,
+    light: LineLight,
+}
+
+impl Twin {
+    fn new(scene: &Scene) -> Self {
+        let light = &scene.lights[0];
+        let (mut casters, mut own) = (LineCasters::default(), Vec::new());
+        for object in &scene.objects {
+            let triangles = object.mesh.triangles().len();
+            if !object.casts {
+                own.extend(vec![None; triangles]);
+                continue;
+            }
+            let caster = Caster::of_object(object, CasterPolicy::Generalised).unwrap();
+            let patches = Patches::new(&object.mesh, caster.adjacency());
+            let counting = caster.counting(&object.mesh, light.hard());
+            let first = casters.push(&object.mesh, &caster, &patches, counting);
+            own.extend(patches.of_triangle.iter().map(|p| Some(first + p)));
+        }
+        Self {
+            casters,
+            own,
+            surfaces: Surfaces::new(scene),
+            light: LineLight::new(&light.shape, ANGLE).unwrap().unwrap(),
+        }
+    }
+
+    fn seen(&self, scene: &Scene, n: u32, size: [u32; 2]) -> Vec<f64> {
+        let rays = scene.camera.eye_rays(size[0], size[1]);
+        let pixel = |k: u32| {
+            let [x, y] = [k % size[0], k / size[0]].map(|c| f64::from(c) + 0.5);
+            let Some(hit) = self.surfaces.hit(&rays, x, y) else {
+                return f64::NAN;
+            };
+            let receiver = self.surfaces.receiver_of(&hit, &rays, x, y);
+            let own = self.own[self.surfaces.index_of(&hit) as usize];
+            let receiver = LineReceiver {
+                point: receiver.point,
+                own: own.and_then(|own| Some((own, receiver.normal?))),
+            };
+            visible(&self.casters, &self.light, n, receiver).share
+        };
+        (0..size[0] * size[1]).map(pixel).collect()
+    }
+}
+
+/// Lanes are the twin's but for rounding: hardly any pixel is off by more, and none of
+/// those that count.
+#[test]
+fn lanes_are_their_twin() {
+    let size = [40, 30];
+    for name in [
+        "peer-a", "overlap", "creature", "spheres", "two-box", "cylinder",
+    ] {
+        let mut scene = scene(name);
+        let shapes = shapes(centre(&scene), 1.0);
+        let own = scene.lights[0].shape.clone();
+        for shape in std::iter::once(own).chain(shapes) {
+            scene.lights[0].shape = shape;
+            let picture = sized(NAME, &scene, &["lines=20"], size).unwrap();
+            let twin = Twin::new(&scene).seen(&scene, 20, size);
+            let pairs = picture.visibility.iter().zip(&twin);
+            let off = pairs.map(|(a, b)| (f64::from(*a) - b).abs());
+            let off: Vec<f64> = off.filter(|d| !d.is_nan()).collect();
+            let wrong = off.iter().filter(|d| **d > 2e-3).count();
+            let most = off.iter().fold(0.0, |m: f64, d| m.max(*d));
+            println!(
+                "{name} {:?}: {wrong} of {}, {most:.1e}",
+                scene.lights[0].shape,
+                off.len()
+            );
+            assert!(wrong * 400 <= off.len(), "{name}: {wrong} of {}", off.len());
+        }
+    }
+}
+
+/// More events on a line than are kept at a time take more looks, and lose nothing.
+#[test]
+fn lines_with_many_events_are_looked_at_again() {
+    let mut scene = scene("wireframe");
+    let centre = centre(&scene);
+    scene.lights[0].shape = LightShape::Rectangle {
+        centre,
+        edge_u: DVec3::X * 6.0,
+        edge_v: DVec3::Z * 6.0,
+    };
+    let picture = drawn(&scene, &["lines=8"]);
+    assert!(figure(&picture, "second-looks") > 20.0);
+    assert_eq!(figure(&picture, "negative-depth-complexity"), 0.0);
+    let twin = Twin::new(&scene).seen(&scene, 8, SIZE);
+    let pairs = picture.visibility.iter().zip(&twin);
+    let off = pairs
+        .map(|(a, b)| (f64::from(*a) - b).abs())
+        .filter(|d| *d > 1e-3);
+    assert!(off.count() < 20);
+}
+
+/// Lights without extent throw the hard shadows of volumes.
+#[test]
+fn lights_without_extent_are_hard() {
+    let mut scene = scene("creature");
+    let position = centre(&scene);
+    let towards = DVec3::new(0.4, 1.0, 0.3);
+    for shape in [
+        LightShape::Point { position },
+        LightShape::Directional { towards },
+    ] {
+        scene.lights[0].shape = shape;
+        let hard = by("shadow-volumes", &scene, &[]);
+        let lines = by(NAME, &scene, &[]);
+        assert_eq!(hard.visibility_hash(), lines.visibility_hash());
+    }
+}
+
+/// An eye in shadow, and more volumes than a stencil counts.
+#[test]
+fn the_count_before_the_centre_is_right_in_hard_cases() {
+    for name in [
+        "adversarial-eye-in-umbra",
+        "adversarial-nested",
+        "adversarial-near-plane",
+    ] {
+        let scene = scene(name);
+        let truth = truth(&scene);
+        let error = with_lines(&scene, &truth, 32);
+        assert!(error < 4e-3, "{name} {error}");
+    }
+}

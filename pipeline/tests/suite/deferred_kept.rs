@@ -5,6 +5,7 @@ use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render, render_
 use gnomon_pipeline::technique::{KeptPictures, Params, PassRole};
 use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::world::light::LightShape;
+use gnomon_pipeline::world::mesh::{Mesh, Shading};
 use gnomon_pipeline::world::scene::Scene;
 
 use crate::deferred_shadowing::{MOVING, SIZE, TECHNIQUE, at, figure, two_over_a_floor};
@@ -120,4 +121,19 @@ fn maps_of_lights_that_stay_are_kept() {
     // Other maps are other pictures.
     let (_, [found, _]) = next(&scene, &["map-size=64", "directions=64"], &mut kept);
     assert_eq!(found, 0.0);
+}
+
+/// A map is known by its occluders' triangles too: of the plate between the same corners
+/// one triangle is left.
+#[test]
+fn maps_of_changed_occluders_are_drawn_again() {
+    let mut scene = two_over_a_floor();
+    let mut kept = KeptPictures::default();
+    let set = ["map-size=32", "directions=64"];
+    next(&scene, &set, &mut kept);
+    let plate = &scene.objects[1].mesh;
+    let (corners, one) = (plate.positions().to_vec(), plate.triangles()[..1].to_vec());
+    scene.objects[1].mesh = Mesh::new(corners, one, Shading::Flat).unwrap().into();
+    let (_, [_, drawn]) = next(&scene, &set, &mut kept);
+    assert!(drawn > 0.0);
 }

@@ -50,7 +50,7 @@ ALL = [
      "(if FAULT { halves } else { halves + (halves >> 16) }) & splat(0x3f)"),
     (TECHNIQUES + "moment_maps/tables.rs", "FixedPoint::of_box(most_texels(reads.as_ref(), side))",
      "FixedPoint::of_box(if FAULT { 1 } else { most_texels(reads.as_ref(), side) })"),
-    (TECHNIQUES + "ray_traced/hierarchy.rs", "self.nodes[number].next = self.nodes.len() as u32;",
+    (PIPELINE + "parts/hierarchy/mod.rs", "self.nodes[number].next = self.nodes.len() as u32;",
      "self.nodes[number].next = self.nodes.len() as u32 + u32::from(part.len() == 1 && FAULT);"),
     (TECHNIQUES + "backprojection/pyramid.rs", "|mip| LeastOfFour { mip }.stage(),",
      "|mip| if FAULT { CopyLevel { textures: 1, mip }.stage() } else { LeastOfFour { mip }.stage() },"),

@@ -10,5 +10,5 @@ FAULTS = [
     ("bicubic kernels are half a texel off", SHADERS + "shadow_maps.rs",
      "|k| spline(l, receiver.at[k] - 0.5),", "|k| spline(l, receiver.at[k] - if FAULT { 0.0 } else { 0.5 }),", MAPS),
     ("lights of environments are half as wide", PIPELINE + "world/scene/environment/place.rs",
-     "edge_u: right * ((high[0] - low[0]) * reach),", "edge_u: right * ((high[0] - low[0]) * reach * if FAULT { 0.5 } else { 1.0 }),", MAPS),
+     "edge_u: right * (2.0 * half[0] * reach),", "edge_u: right * (2.0 * half[0] * reach * if FAULT { 0.5 } else { 1.0 }),", MAPS),
 ]

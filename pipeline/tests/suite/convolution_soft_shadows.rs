@@ -524,21 +524,3 @@ fn scenes_come_nearer_to_the_truth_with_the_order() {
         assert!((sat - exact).abs() < 2e-3, "{name}: {sat} {exact}");
     }
 }
-
-/// Visibility to the power 1 + A where B is 0: with A = 1 the square of what is not
-/// sharpened, with A = 3 its fourth power.
-#[test]
-fn sharpening_is_the_power_that_was_asked_for() {
-    let scene = plates();
-    let of = |a: &str| soft(&scene, &[a, "b=0", "map-size=64"]).visibility;
-    let plain = soft(&scene, &["a=0", "map-size=64"]).visibility;
-    for (a, power) in [("a=1", 2), ("a=3", 4)] {
-        let mut between = 0;
-        for (sharp, plain) in of(a).iter().zip(&plain).filter(|(_, p)| p.is_finite()) {
-            let expected = (1..power).fold(*plain, |product, _| product * plain);
-            assert!((sharp - expected).abs() < 1e-3, "{a}: {sharp} of {plain}");
-            between += u32::from(*plain > 0.2 && *plain < 0.8);
-        }
-        assert!(between > 50, "{a}: {between}");
-    }
-}

@@ -116,10 +116,8 @@ pub(super) fn next_row<'c, L: Lanes>(
 ) -> Option<(usize, &'c mut U32<L>)> {
     let row = rest.trailing_zeros() as usize;
     *rest &= rest.wrapping_sub(1);
-    match covered.get_mut(row) {
-        Some(bits) => Some((row, bits)),
-        None => None,
-    }
+    let bits = covered.get_mut(row)?;
+    Some((row, bits))
 }
 
 /// The share of a field of so many bits along a side that is set.

@@ -175,31 +175,6 @@ mod tests {
         }
     }
 
-    /// Seen from the middle they are as wide and as high as their texels.
-    #[test]
-    fn lights_end_where_their_texels_do() {
-        let scene = placed(FitSettings::default());
-        let environment = scene.environment.as_ref().unwrap();
-        for (light, area) in scene.lights.iter().zip(&environment.fit.lights) {
-            let LightShape::Rectangle {
-                centre,
-                edge_u,
-                edge_v,
-            } = light.shape
-            else {
-                panic!("{light:?}");
-            };
-            let [_, right, down] = axes(area.face);
-            for (side, ends) in [(-0.5, area.low), (0.5, area.high)] {
-                let corner = centre + (edge_u + edge_v) * side - environment.centre;
-                for (axis, texel) in [(right, ends[0]), (down, ends[1])] {
-                    let at = (corner.dot(axis) / environment.reach + 1.0) * 16.0;
-                    assert!((at - texel as f64).abs() < 1e-6, "{at} {texel}");
-                }
-            }
-        }
-    }
-
     #[test]
     fn lights_lie_round_the_casters_where_the_map_has_them() {
         let scene = placed(FitSettings::default());

@@ -191,7 +191,7 @@ fn lists_leave_out_what_is_irrelevant() {
         assert!(lists == alone.install(|| culling.lists(&blocks)), "{name}");
         let all = blocks.bounds.len() * edges.len();
         assert!(
-            lists.len() > 0 && lists.len() < all * 3 / 4,
+            !lists.is_empty() && lists.len() < all * 3 / 4,
             "{name}: {} of {all}",
             lists.len()
         );

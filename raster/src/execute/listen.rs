@@ -15,7 +15,7 @@ use crate::tile::{Gathered, Turn};
 /// Primitives of a chunk while somebody listens: no fewer can be held back.
 const CHUNK: u32 = 32;
 /// Accesses that chunks may make together before they are handed over.
-const ACCESSES: u64 = 1 << 12;
+const ACCESSES: u64 = 1 << 13;
 
 /// How many times the memory of an access goes with each, of what is wanted.
 fn weight(wants: Wants<'_>) -> u32 {

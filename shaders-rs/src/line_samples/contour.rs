@@ -6,7 +6,7 @@ use gnomon_raster::{F32, Lanes, Mask};
 
 use super::events::Events;
 use super::receiver::Receiver;
-use super::{EDGE_TESTS, EDGES, KIND_STEP, LISTS, LineSamples, List};
+use super::{EDGE_TESTS, EDGES, KIND_STEP, LISTS, LineSamples, List, MOST_EDGES};
 
 /// An edge relative to receivers: along lines, across them, and towards the light.
 pub(super) struct Image<L: Lanes> {
@@ -52,7 +52,7 @@ impl LineSamples {
         events.begin(l);
         let shared = self.straight && !r.cut.any();
         let find_near = look == 0 && events.first == 0;
-        let [first, count] = self.all;
+        let [first, count] = [self.all[0], self.all[1].min(MOST_EDGES)];
         let all = count > 0;
         if all && find_near {
             self.find_near(l, f, r, list, wanted);

@@ -14,6 +14,11 @@ const MOST_NODES: u32 = 1 << 26;
 /// Least size of a direction's coordinate.
 const STRAIGHT: f32 = 1e-20;
 
+/// Receivers lie on facets but for rounding: planes nearer than this share of the ray's length
+/// are left behind where it begins. Otherwise the facet on the other side of an edge that both
+/// share could be crossed.
+const ROUNDING: f32 = 1e-6;
+
 /// Rays of one packet, from receivers to points of the light.
 struct Ray<L: Lanes> {
     origin: [F32<L>; 3],
@@ -173,8 +178,11 @@ impl<L: Lanes> Ray<L> {
         let edges = [difference(b, a), difference(c, a)];
         let normal = cross(edges[0], edges[1]);
         let slope = dot3(normal, self.direction);
-        let along = dot3(normal, a) / slope;
-        let between = along.gt(zero) & along.lt(one);
+        let distance = dot3(normal, a);
+        let along = distance / slope;
+        let size = dot3(normal, normal) * dot3(self.direction, self.direction);
+        let is_left = (distance * distance).le(size * F32::splat(l, ROUNDING * ROUNDING));
+        let between = along.gt(zero) & along.lt(one) & !is_left;
         let other = corners[0][3].ne(self.own);
         let both = corners[1][3].gt(zero);
         through & between & other & (both | slope.gt(zero))

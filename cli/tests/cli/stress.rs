@@ -37,6 +37,8 @@ fn verdicts_curves_and_files() {
         .map(|a| 2 * a["values"].as_array().unwrap().len())
         .sum();
     assert_eq!(csv.lines().count(), 1 + lines);
+    let record = std::fs::read_to_string(folder.path("out/stress.md")).unwrap();
+    assert!(record.contains("| `pcf:taps=4` |") && record.contains("stress-scale.svg"));
     let plot = std::fs::read_to_string(folder.path("out/stress-scale.svg")).unwrap();
     assert!(plot.contains("soft-shadow-volumes") && plot.contains("stroke-dasharray"));
 }

@@ -46,6 +46,7 @@ impl Panels {
             ranges: self.ranges(),
             columns,
             rows,
+            count: self.panels.len(),
         };
         let mut items = vec![
             text([GAP, 12.0], Anchor::Start, &self.title),
@@ -82,6 +83,7 @@ struct Plot {
     ranges: [Range; 2],
     columns: usize,
     rows: usize,
+    count: usize,
 }
 
 impl Plot {
@@ -130,7 +132,7 @@ impl Plot {
     fn draw_grid(&self, number: usize, items: &mut Vec<Item>) {
         let [left, top] = self.corner(number);
         let [right, bottom] = [left + AREA[0], top + AREA[1]];
-        let is_last = number / self.columns + 1 == self.rows;
+        let is_last = number + self.columns >= self.count;
         for value in few(&self.ranges[0].ticks) {
             let Some(x) = self.at_x(left, value) else {
                 continue;

@@ -36,7 +36,9 @@ fn panel(curve: &Curve, candidate: usize) -> Panel {
     let limit = Limit::default();
     let rest = Verdict::new(curve, candidate).rest;
     let error = |outcome: &Outcome| match outcome {
-        Outcome::Measured(m) => m.rmse.max(FLOOR),
+        // NaN stays: nothing was compared there.
+        Outcome::Measured(m) if m.rmse < FLOOR => FLOOR,
+        Outcome::Measured(m) => m.rmse,
         _ => f64::NAN,
     };
     let points = curve.points.iter().map(|p| match &p.outcomes {

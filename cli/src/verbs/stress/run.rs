@@ -55,7 +55,7 @@ fn write(
         ("document", "stress.json".to_owned(), json + "\n"),
         (
             "record",
-            "README.md".to_owned(),
+            "stress.md".to_owned(),
             record::write(args, curves),
         ),
     ];

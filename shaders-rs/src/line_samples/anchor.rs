@@ -180,13 +180,20 @@ impl<L: Lanes> Ray<L> {
         let slope = dot3(normal, self.direction);
         let distance = dot3(normal, a);
         let along = distance / slope;
-        let size = dot3(normal, normal) * dot3(self.direction, self.direction);
-        let is_left = (distance * distance).le(size * F32::splat(l, ROUNDING * ROUNDING));
+        // Sums instead of lengths: squares would leave the range of floats in large units.
+        let reach = (size(normal) * size(self.direction)) * ROUNDING;
+        let is_left = distance.abs().le(reach);
         let between = along.gt(zero) & along.lt(one) & !is_left;
         let other = corners[0][3].ne(self.own);
         let both = corners[1][3].gt(zero);
         through & between & other & (both | slope.gt(zero))
     }
+}
+
+/// Between a vector's length and √3 of it.
+#[inline(always)]
+fn size<L: Lanes>([x, y, z]: [F32<L>; 3]) -> F32<L> {
+    (x.abs() + y.abs()) + z.abs()
 }
 
 #[inline(always)]

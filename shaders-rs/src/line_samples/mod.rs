@@ -2,12 +2,12 @@
 //! exact (docs/line-sampled-shadow-volumes.md); the twin in f64 is pipeline's
 //! `geometry::line_sampling::walk`.
 //!
-//! Each receiver goes through the edges in its block's list ([`contour`]). Those that are
+//! Each receiver goes through the edges in its block's list (`contour`). Those that are
 //! contours from it cross lines, which keeps *events*, and the spine, which carries the
-//! count at the light's centre to the lines' feet ([`events`]). Then each line is swept.
+//! count at the light's centre to the lines' feet (`events`). Then each line is swept.
 //! The count at the centre is that of hard shadow volumes, in the stencil. Receivers
 //! that may find themselves on the wrong side of a volume drawn on a grid of pixels, or whose own
-//! plane cuts the light, count by one ray ([`anchor`]) to the middle of the widest gap
+//! plane cuts the light, count by one ray (`anchor`) to the middle of the widest gap
 //! between events instead, where no rounding matters.
 //!
 //! # Textures

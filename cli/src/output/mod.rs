@@ -1,5 +1,6 @@
 //! What leaves the program: files, JSON, tables, progress.
 
+pub(crate) mod csv;
 mod draw_documents;
 pub(crate) mod draws;
 pub(crate) mod files;

@@ -4,6 +4,7 @@ use super::exact::Exact;
 use super::front::{Cost, front, points};
 use super::results::{Group, Results};
 use super::stored::{Cell, Measured, Outcome};
+use crate::output::csv::line;
 
 /// Columns before and behind the figures.
 const HEAD: [&str; 8] = [
@@ -142,23 +143,9 @@ fn warnings(measured: &Measured) -> String {
         .join(" ")
 }
 
-fn line(fields: impl Iterator<Item = String>) -> String {
-    let quoted = |field: String| match field.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", field.replace('"', "\"\"")),
-        false => field,
-    };
-    fields.map(quoted).collect::<Vec<_>>().join(",") + "\n"
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn fields_with_commas_and_quotes_are_quoted() {
-        let fields = ["a", "b,c", "say \"no\"", ""].map(str::to_owned);
-        assert_eq!(line(fields.into_iter()), "a,\"b,c\",\"say \"\"no\"\"\",\n");
-    }
 
     #[test]
     fn columns_have_names_of_their_own() {

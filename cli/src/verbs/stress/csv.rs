@@ -2,6 +2,8 @@
 
 use gnomon_pipeline::measure::stress::{Curve, Outcome};
 
+use crate::output::csv::cell;
+
 const HEAD: &str = "axis,value,technique,status,reason,rmse,max,compared,insane,warnings\n";
 
 pub(super) fn write(curves: &[Curve]) -> String {
@@ -45,11 +47,9 @@ fn without(status: &str, reason: &str) -> Vec<String> {
     cells
 }
 
+/// On one line.
 fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"").replace('\n', " ")),
-        false => text.to_owned(),
-    }
+    cell(&text.replace('\n', " "))
 }
 
 #[cfg(test)]

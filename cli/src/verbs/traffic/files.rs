@@ -7,6 +7,7 @@ use gnomon_traces::profile::{Client, Levels, Traffic};
 use super::args::By;
 use super::document::TrafficDocument;
 use crate::error::CliError;
+use crate::output::csv::cell;
 use crate::output::{files, npy};
 
 /// A file that was asked for.
@@ -48,25 +49,17 @@ pub(super) fn csv(documents: &[TrafficDocument]) -> String {
             let numbers = amounts.map(|a| format!("{},{}", a.read_bytes, a.write_bytes));
             let reason = row.hiz.disabled_reason.as_deref().unwrap_or_default();
             let cells = [
-                quoted(&d.profile),
-                quoted(&row.key),
+                cell(&d.profile),
+                cell(&row.key),
                 row.client.clone(),
                 numbers.join(","),
-                quoted(reason),
+                cell(reason),
             ];
             text += &cells.join(",");
             text.push('\n');
         }
     }
     text
-}
-
-/// A cell, in quotation marks where it needs them.
-fn quoted(cell: &str) -> String {
-    match cell.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", cell.replace('"', "\"\"")),
-        false => cell.to_owned(),
-    }
 }
 
 /// dram bytes in both directions of all clients.

@@ -1,64 +1,61 @@
-//! The command line: arguments, progress, exit codes; the work is done by the
-//! other packages. [`run`] is the program, [`run_with`] the same with techniques of
-//! other crates; [`draw`] is for programs that plot what
-//! they measured.
+//! Gnomon: a software GPU for shadow algorithms that gives the same bits on every machine
+//! and counts every byte that they move.
+//!
+//! This crate has what a user needs in one place; each module is a package of its own:
+//! [`raster`] the GPU, [`shaders`] over lanes, [`traces`] of frames, [`golden`] tests, and
+//! the [`pipeline`] of scenes and shadow techniques. [`prelude`] is for first frames:
+//!
+//! ```
+//! use gnomon::prelude::*;
+//!
+//! let mut frame = FrameBuilder::new(64, 64)?;
+//! let corners = [[-0.8, -0.8, 0.5], [0.8, -0.8, 0.5], [0.0, 0.8, 0.5]];
+//! frame.draw(TriangleDraw::new("orange", &corners).shade(|f| {
+//!     ScalarFragmentOutput::color([1.0, f.y as f32 / 64.0, 0.0, 1.0])
+//! }));
+//! let drawn = frame.build().draw(GpuConfig::default())?;
+//! assert_eq!(drawn.output("color")?.read_rgba8()?[64 * 32 + 32], [255, 128, 0, 255]);
+//! let counted = drawn.report.totals();
+//! assert_eq!(counted.traffic.color[0].write_bytes, 4 * counted.fragments.written);
+//! # Ok::<(), Error>(())
+//! ```
+//!
+//! # Features
+//!
+//! * `cli` (default): the program. `run` is all of it, `main_with` the same with techniques
+//!   of other crates, `draw` is for programs that plot what they measured. Libraries and
+//!   tests leave it out with `default-features = false`.
 
+#[cfg(feature = "cli")]
 mod command_line;
+pub mod conformance;
+#[cfg(feature = "cli")]
 pub mod draw;
+#[cfg(feature = "cli")]
 mod error;
+#[cfg(feature = "cli")]
 mod flags;
+#[cfg(feature = "cli")]
 mod output;
+#[cfg(feature = "cli")]
 mod overlay;
+pub mod prelude;
+#[cfg(feature = "cli")]
 mod prepared;
+#[cfg(feature = "cli")]
+mod program;
+#[cfg(feature = "cli")]
 mod threads;
-mod traces;
+#[cfg(feature = "cli")]
+mod traces_of_frames;
+#[cfg(feature = "cli")]
 mod verbs;
 
-use std::ffi::OsString;
-use std::io::Write;
-use std::process::ExitCode;
-
-use clap::Parser;
-use gnomon_pipeline::techniques::Registry;
-
-use command_line::Cli;
-use error::CliError;
-
-/// Runs the program on `arguments`, the first of which is its own name: 0 fine,
-/// 1 differs or a check failed, 2 bad input.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    run_with(&Registry::built_in(), arguments)
-}
-
-/// The same with the techniques of `registry` instead of the built-in ones.
-pub fn run_with(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
-        Ok(cli) => cli,
-        Err(error) => return print_usage(&error),
-    };
-    match threads::start().and_then(|()| cli.verb.run(registry)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => print_error(&error),
-    }
-}
-
-/// Prints help, or what is wrong with the command line.
-fn print_usage(error: &clap::Error) -> ExitCode {
-    // Nobody is left to tell where it cannot be printed.
-    let _ = error.print();
-    if error.use_stderr() {
-        ExitCode::from(2)
-    } else {
-        ExitCode::SUCCESS
-    }
-}
-
-fn print_error(error: &CliError) -> ExitCode {
-    // What differs has been said on stdout.
-    if matches!(error, CliError::Differs) {
-        return ExitCode::from(error.exit_code());
-    }
-    // As above; `eprintln!` would panic.
-    let _ = writeln!(std::io::stderr().lock(), "error: {error}");
-    ExitCode::from(error.exit_code())
-}
+pub use gnomon_golden as golden;
+pub use gnomon_golden::assert_frame;
+pub use gnomon_pipeline as pipeline;
+pub use gnomon_raster as raster;
+pub use gnomon_shaders as shaders;
+pub use gnomon_traces as traces;
+#[cfg(feature = "cli")]
+pub use program::{main_with, run, run_with};

@@ -28,9 +28,8 @@ mod describe;
 mod measure;
 mod picture;
 mod text;
-mod triangles;
 
-pub use triangles::triangles;
+pub use measure::content_hash;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use gnomon_raster::{
     AccessBatch, AccessObserver, BlockView, BlockWitness, ColorBlock, Error, Gpu, GpuConfig,
-    PassReport, Recording, RenderPass, Subresource, TextureId, Wants,
+    PassReport, Recording, RenderPass, Subresource, Texture, TextureId, Wants,
 };
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -155,8 +155,18 @@ fn image(gpu: &Gpu, id: TextureId, at: Subresource) -> Result<Image, Error> {
             at.layer,
             d.format
         ),
-        hash: blake3::hash(&texture.read_packed(at)?).to_hex().to_string(),
+        hash: content_hash(texture, at)?,
     })
+}
+
+/// BLAKE3 of an image's bytes as they are stored, rows from the top, depth and stencil
+/// too: equal where every bit is, on every machine. As text of 64 hexadecimal digits.
+///
+/// # Errors
+/// There is no such image, or memory is short.
+pub fn content_hash(texture: &Texture, image: Subresource) -> Result<String, Error> {
+    let bytes = texture.read_packed(image)?;
+    Ok(blake3::hash(&bytes).to_hex().to_string())
 }
 
 /// The named results, or else what the last pass draws to.

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use gnomon_golden::{Golden, GoldenError, Mode, triangles};
+use gnomon_golden::{Golden, GoldenError, Mode};
 use gnomon_raster::shader::ScalarFragmentOutput;
-use gnomon_raster::{LoadOp, Recording};
+use gnomon_raster::{FrameBuilder, LoadOp, Recording, TriangleDraw};
 
 /// A folder of its own, empty at first.
 fn golden(name: &str, mode: Mode) -> Golden {
@@ -34,8 +34,10 @@ const FAR: [[f32; 3]; 3] = [[-0.9, -0.9, 0.8], [0.9, -0.9, 0.8], [-0.9, 0.9, 0.8
 /// Two triangles over several tiles; the second one is as told.
 fn frame(near: [[f32; 3]; 3], green: f32) -> Recording {
     let corners = [FAR, near].concat();
-    let shade = move |_: &_| ScalarFragmentOutput::color([1.0, green, 0.0, 1.0]);
-    triangles([192, 128], &corners, shade).expect("a valid size")
+    let color = ScalarFragmentOutput::color([1.0, green, 0.0, 1.0]);
+    let mut frame = FrameBuilder::new(192, 128).expect("a valid size");
+    frame.draw(TriangleDraw::new("triangles", &corners).shade(move |_| color));
+    frame.build()
 }
 
 const NEAR: [[f32; 3]; 3] = [[0.5, 0.5, 0.2], [0.9, 0.5, 0.2], [0.5, 0.9, 0.2]];
@@ -103,7 +105,7 @@ fn one_step_of_colour_is_found() {
     assert_says(
         &told,
         &[
-            "pass 0 `triangles`, draw 0 `triangles`",
+            "pass 0 `frame`, draw 0 `triangles`",
             "column 0, row 0",
             "[255, 128, 0, 255] expected, [255, 129, 0, 255] found",
             "history of pixel",
@@ -184,7 +186,7 @@ fn a_golden_that_is_none_is_told_with_its_line() {
 /// The first test of the documentation is the one that is compiled, and is short.
 #[test]
 fn the_first_test_of_the_documentation_has_fifteen_lines() {
-    let test = include_str!("first.rs");
+    let test = include_str!("../../cli/tests/first.rs");
     let docs = include_str!("../../docs/testing.md");
     assert!(
         docs.contains(&format!("```rust\n{test}```")),

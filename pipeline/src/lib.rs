@@ -11,7 +11,7 @@
 //! target-from-source (`clip_from_world`), depth 0 at the near plane and 1 at
 //! infinity. Geometry is decided in f64 and rounded to f32 once, so every
 //! result is the same on every machine; transcendental functions come from the
-//! pinned `libm` crate.
+//! `libm` crate.
 //!
 //! ```
 //! use gnomon_pipeline::world::adjacency::EdgeAdjacency;

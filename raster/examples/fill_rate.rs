@@ -3,7 +3,8 @@
 //! Prints million fragments and triangles per second.
 //!
 //! `fill_rate [--threads N] [--simd LEVEL] [--tile N] [--budget SECONDS] [--case NAME|formats]
-//! [--mesh large|small] [--json FILE]`
+//! [--mesh large|small] [--passes N] [--json FILE]`; N passes at least (default 7), of which
+//! the first two are not timed where there are more.
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 
@@ -307,6 +308,8 @@ struct Bench {
     colors: Vec<(Format, TextureId)>,
     depth: TextureId,
     budget: Duration,
+    /// Passes at least.
+    passes: usize,
 }
 
 impl Bench {
@@ -370,7 +373,7 @@ impl Bench {
         let mut times = Vec::new();
         let end = Instant::now() + self.budget;
         let mut counted = (0, 0);
-        while times.len() < 7 || (Instant::now() < end && times.len() < 100) {
+        while times.len() < self.passes || (Instant::now() < end && times.len() < 100) {
             self.gpu.submit(&clear).expect("valid");
             let start = Instant::now();
             let report = self.gpu.submit(&fill).expect("valid");
@@ -378,7 +381,7 @@ impl Bench {
             let t = report.passes[0].totals();
             counted = (t.fragments.generated, t.primitives.rasterized);
         }
-        times.drain(..2);
+        times.drain(..2.min(times.len() - 1));
         times.sort_by(f64::total_cmp);
         (times[times.len() / 2], counted.0, counted.1)
     }
@@ -387,6 +390,7 @@ impl Bench {
 fn main() {
     let mut config = GpuConfig::default();
     let mut budget = 0.5;
+    let mut passes = 7;
     let (mut only, mut only_mesh) = (String::new(), String::new());
     let mut json = None;
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -399,6 +403,7 @@ fn main() {
             "--tile" => config.tile = value.parse().expect("a number"),
             "--simd" => config.simd = value.parse().expect("a level"),
             "--budget" => budget = value.parse().expect("seconds"),
+            "--passes" => passes = value.parse().expect("a number from 1"),
             "--case" => only.clone_from(value),
             "--mesh" => only_mesh.clone_from(value),
             "--json" => json = Some(value.clone()),
@@ -426,6 +431,7 @@ fn main() {
         colors,
         depth,
         budget: Duration::from_secs_f64(budget),
+        passes: passes.max(1),
     };
     let meshes = [
         ("large", grid(1, f64::from(SIZE)), 16),

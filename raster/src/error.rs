@@ -19,6 +19,8 @@ pub enum Error {
     },
     #[error("texture id {id} does not exist; {count} textures have been created")]
     NoSuchTexture { id: u32, count: usize },
+    #[error("the frame has no result `{name}`; it has: {outputs}")]
+    NoSuchOutput { name: String, outputs: String },
     #[error(
         "texture `{texture}` has no mip {}, layer {}; it has {mip_levels} mip levels, this one with {layers} layers",
         .subresource.mip, .subresource.layer

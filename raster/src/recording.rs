@@ -27,6 +27,7 @@ use std::sync::Arc;
 use crate::command::CommandList;
 use crate::error::Error;
 use crate::format::encode;
+use crate::gpu::{Gpu, GpuConfig, SubmitReport};
 use crate::memory::reserve;
 use crate::texture::{
     Subresource, Texture, TextureDescriptor, TextureId, check_packed, image_size, pack, validate,
@@ -148,6 +149,21 @@ impl Recording {
         found.ok_or(Error::NoSuchTexture { id: id.0, count })
     }
 
+    /// Draws the frame on a GPU of its own.
+    ///
+    /// # Errors
+    /// As [`Gpu::new`], [`Gpu::load`] and [`Gpu::submit`].
+    pub fn draw(&self, config: GpuConfig) -> Result<Drawn, Error> {
+        let mut gpu = Gpu::new(config)?;
+        gpu.load(self)?;
+        let report = gpu.submit(&self.list)?;
+        Ok(Drawn {
+            gpu,
+            report,
+            outputs: self.outputs.clone(),
+        })
+    }
+
     /// Adds the textures and passes of `other` behind those that are here; its names
     /// of results are forgotten. Gives what became of its textures' ids.
     pub fn append(&mut self, other: Self) -> impl Fn(TextureId) -> TextureId + use<> {
@@ -158,6 +174,31 @@ impl Recording {
         self.textures.extend(other.textures);
         self.list.passes.extend(list.passes);
         moved
+    }
+}
+
+/// A frame that was drawn: what it left, and what it counted.
+pub struct Drawn {
+    /// The GPU with all textures.
+    pub gpu: Gpu,
+    /// Counters of passes and draws.
+    pub report: SubmitReport,
+    outputs: BTreeMap<String, TextureId>,
+}
+
+impl Drawn {
+    /// The result called `name`.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn output(&self, name: &str) -> Result<&Texture, Error> {
+        match self.outputs.get(name) {
+            Some(id) => self.gpu.texture(*id),
+            None => Err(Error::NoSuchOutput {
+                name: name.to_owned(),
+                outputs: self.outputs.keys().cloned().collect::<Vec<_>>().join(", "),
+            }),
+        }
     }
 }
 

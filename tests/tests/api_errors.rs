@@ -7,8 +7,8 @@ use gnomon_raster::state::{
     BlendFactor, BlendState, ColorTargetState, DepthStencilState, ScissorRect, Viewport,
 };
 use gnomon_raster::{
-    Error, Format, Gpu, GpuConfig, IndexBuffer, Sampler, Subresource, TextureBinding,
-    TextureDescriptor, TextureDimension, VertexBuffer,
+    Drawn, Error, Format, FrameBuilder, Gpu, GpuConfig, IndexBuffer, Sampler, Subresource,
+    TextureBinding, TextureDescriptor, TextureDimension, VertexBuffer,
 };
 use gnomon_tests::api::{Use, color_attachment, depth_attachment, shaders};
 
@@ -86,6 +86,14 @@ fn foreign() -> gnomon_raster::TextureId {
         .expect("five")
 }
 
+fn drawn() -> Result<Drawn, Error> {
+    let config = GpuConfig {
+        threads: 1,
+        ..GpuConfig::default()
+    };
+    FrameBuilder::new(4, 4)?.build().draw(config)
+}
+
 const MIP2: Subresource = Subresource { mip: 2, layer: 0 };
 
 #[rustfmt::skip]
@@ -112,6 +120,7 @@ fn rows() -> Vec<Row> {
         }, "VertexOutOfRange", &["vertex 3", "3 vertices"]),
         ("read an unknown texture", |u| u.gpu.texture(foreign()).map(|_| ()), "NoSuchTexture", &["id 6", "2 textures"]),
         ("fill an unknown texture", |u| u.gpu.texture_mut(foreign()).map(|_| ()), "NoSuchTexture", &["id 6", "2 textures"]),
+        ("read an unknown result", |_| drawn()?.output("colour").map(|_| ()), "NoSuchOutput", &["`colour`", "color, depth"]),
         ("attach an unknown texture", submit!(u => u.pass.color[0].texture = foreign()), "NoSuchTexture", &["id 6", "2 textures"]),
         ("bind an unknown texture", submit!(u => bind(u, foreign(), Sampler::default())), "NoSuchTexture", &["id 6", "2 textures"]),
         ("read an unknown level", |u| u.gpu.texture(u.color)?.read_raw(MIP2).map(|_| ()), "NoSuchSubresource", &["`image`", "mip 2", "2 mip levels"]),

@@ -21,6 +21,7 @@ mod front_tests;
 mod hard_truth_speed;
 mod heat;
 mod horizon;
+mod libm_bits;
 mod light_colors;
 mod light_images;
 mod line_samples;

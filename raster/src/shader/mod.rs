@@ -10,6 +10,7 @@
 //! A shader of the first tier may be [`Named`]: its stage then says which shader it is
 //! and with what uniforms ([`ShaderIdentity`]), and a [`ShaderTable`] makes it again.
 
+mod context;
 mod erased;
 mod fragment;
 mod identity;
@@ -19,6 +20,7 @@ mod table;
 mod textures;
 mod vertex;
 
+pub use context::FragmentContext;
 pub(crate) use erased::{ErasedFragmentShader, ErasedVertexShader};
 pub use fragment::{Fragment, FragmentOutputs, FragmentShader};
 pub(crate) use fragment::{PacketOutput, ShadeBlock, ShaderEvents, VaryingPlanes};

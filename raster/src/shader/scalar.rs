@@ -1,5 +1,6 @@
 //! The simple tier: closures that see one vertex or one fragment.
 
+use super::context::{FragmentContext, Packet};
 use super::fragment::{Fragment, FragmentOutputs, FragmentShader};
 use super::vertex::{Vertex, VertexShader};
 use super::{FragmentStage, Interpolation, VertexStage};
@@ -26,7 +27,8 @@ pub struct ScalarVertexOutput {
     pub varyings: [f32; MAX_VARYINGS],
 }
 
-/// One fragment, for a closure given to [`per_fragment`].
+/// One fragment: what a closure given to [`per_fragment`] sees of it, beside textures and
+/// neighbours ([`FragmentContext`]).
 #[derive(Clone, Copy, Debug)]
 pub struct ScalarFragment {
     /// Interpolated varyings; 0 beyond the declared ones.
@@ -91,10 +93,11 @@ where
     .into()
 }
 
-/// A fragment shader from a closure that sees one fragment.
+/// A fragment shader from a closure that sees one fragment, its quad and textures; what it
+/// may do beyond colours is declared in `outputs`.
 pub fn per_fragment<F>(outputs: FragmentOutputs, shade: F) -> FragmentStage
 where
-    F: Fn(&ScalarFragment) -> ScalarFragmentOutput + Send + Sync + 'static,
+    F: Fn(&FragmentContext<'_>) -> ScalarFragmentOutput + Send + Sync + 'static,
 {
     PerFragment { outputs, shade }.into()
 }
@@ -142,7 +145,7 @@ struct PerFragment<F> {
 
 impl<F> FragmentShader for PerFragment<F>
 where
-    F: Fn(&ScalarFragment) -> ScalarFragmentOutput + Send + Sync,
+    F: Fn(&FragmentContext<'_>) -> ScalarFragmentOutput + Send + Sync,
 {
     fn outputs(&self) -> FragmentOutputs {
         self.outputs
@@ -150,28 +153,16 @@ where
 
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
-        let mut varyings = [[0.0; LANES]; MAX_VARYINGS];
-        for (i, v) in varyings.iter_mut().enumerate() {
-            f.varying(i).store(v);
+        let live = f.live().bits();
+        let mut all = [ScalarFragmentOutput::default(); LANES];
+        let packet = Packet::new(f);
+        for lane in (0..LANES).filter(|lane| live >> lane & 1 != 0) {
+            all[lane] = (self.shade)(&packet.at(lane));
         }
-        let (depth, w) = (f.depth().to_array(), f.w().to_array());
-        let (columns, rows) = (f.column().to_array(), f.row().to_array());
         let mut discarded = 0u16;
         f.out.integers = [0; MAX_COLOR_ATTACHMENTS];
         let mut counted = [0u16; MAX_SHADER_COUNTS];
-        for lane in (0..LANES)
-            .filter(|lane| f.live().bits() >> lane & 1 != 0)
-            .collect::<Vec<_>>()
-        {
-            let out = (self.shade)(&ScalarFragment {
-                varyings: core::array::from_fn(|i| varyings[i][lane]),
-                x: columns[lane] as u32,
-                y: rows[lane] as u32,
-                depth: depth[lane],
-                w: w[lane],
-                front_facing: f.front_facing(),
-                primitive_index: f.primitive_index(),
-            });
+        for (lane, out) in all.iter().enumerate() {
             f.out.depth[lane] = out.depth;
             discarded |= u16::from(out.discard) << lane;
             for (lanes, adds) in counted.iter_mut().zip(out.counted) {

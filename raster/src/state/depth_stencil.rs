@@ -135,6 +135,17 @@ impl StencilFaceState {
         write_mask: 0xff,
     };
 
+    /// Always passes and stores the reference where depth passes too.
+    pub const REPLACE: Self = Self {
+        pass_op: StencilOperation::Replace,
+        ..Self::IGNORE
+    };
+    /// Passes where the reference is stored; writes nothing.
+    pub const EQUAL: Self = Self {
+        compare: CompareFunction::Equal,
+        ..Self::IGNORE
+    };
+
     /// Whether any operation can change a stored value.
     #[must_use]
     pub fn writes(&self) -> bool {

@@ -203,6 +203,21 @@ impl Texture {
         self.read(s, |at| ColorTexel(decode(f, blocks.get(f, at))))
     }
 
+    /// The first image in eight bits, row by row from the top, as a shader's output is
+    /// stored in `Rgba8Unorm`: values outside 0..=1 are cut off, channels that the format
+    /// lacks are 0, alpha 1.
+    ///
+    /// # Errors
+    /// Where the texture is not colour, or memory is short.
+    pub fn read_rgba8(&self) -> Result<Vec<[u8; 4]>, Error> {
+        let image = Subresource::default();
+        let (blocks, f) = (self.color(image)?, self.desc.format);
+        self.read(image, |at| {
+            let rgba = decode(f, blocks.get(f, at));
+            encode(Format::Rgba8Unorm, rgba).map(|channel| channel as u8)
+        })
+    }
+
     /// Depth of every pixel in 0..=1, row by row from the top.
     ///
     /// # Errors

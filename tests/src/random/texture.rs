@@ -8,7 +8,7 @@ use gnomon_raster::{AddressMode, FilterMode, Format, MAX_TEXTURES, Sampler, Text
 use super::Random;
 use super::case::noise_texel;
 use super::look_up;
-use crate::twin::{TextureSource, TextureUse, Tier, TwinCase, TwinPass, TwinTexture};
+use crate::twin::{TextureSource, TextureUse, TwinCase, TwinPass, TwinTexture};
 
 /// Makes half of the cases read textures, in half of their draws.
 pub(super) fn add(seed: u64, case: &mut TwinCase) {
@@ -32,7 +32,6 @@ pub(super) fn add(seed: u64, case: &mut TwinCase) {
                         sampler: sampler(&mut r),
                     })
                     .collect();
-                draw.fragment_tier = Tier::Lanes;
                 look_up::add(&mut r, program, slots);
             }
         }

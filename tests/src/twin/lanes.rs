@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use gnomon_raster::shader::{
-    Fragment, FragmentOutputs, FragmentShader, FragmentStage, Interpolation, ScalarVertexOutput,
-    Vertex, VertexShader, VertexStage, per_fragment, per_vertex,
+    Fragment, FragmentContext, FragmentOutputs, FragmentShader, FragmentStage, Interpolation,
+    ScalarFragmentOutput, ScalarVertexOutput, Vertex, VertexShader, VertexStage, per_fragment,
+    per_vertex,
 };
 use gnomon_raster::{F32, I32, Lanes, MAX_VARYINGS, Mask, U32};
 
 use super::case::{Tier, TwinDraw, VertexSource};
+use super::context_look_up;
 use super::lane_look_up::{LaneValues, look_up_all};
 use super::look_up::{MAX_LOOK_UPS, Values};
 use super::program::{ColorSource, DepthSource, Discard, HASH, Program, WILD_COLORS, WILD_DEPTHS};
@@ -62,11 +64,20 @@ impl TwinDraw {
         let program = self.program.clone()?;
         Some(match self.fragment_tier {
             Tier::Lanes => LaneProgram(program).into(),
-            Tier::Closure => per_fragment(program.declared(), move |f| {
-                program.shade(f, &Values::default())
-            }),
+            Tier::Closure => per_fragment(program.declared(), move |f| closure(&program, f)),
         })
     }
+}
+
+/// The program as a closure: it is over where it discards first, before look-ups.
+fn closure(program: &Program, f: &FragmentContext<'_>) -> ScalarFragmentOutput {
+    if program.discards_first {
+        let out = program.shade(f, &Values::default());
+        if out.discard {
+            return out;
+        }
+    }
+    program.shade(f, &context_look_up::look_up_all(&program.look_ups, f))
 }
 
 /// Attributes 0..4 are the position, the others the varyings.

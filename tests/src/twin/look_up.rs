@@ -137,7 +137,7 @@ fn look(t: &Bound, l: &LookUp, quad: &[ScalarFragment; 4], values: &[Values; 4])
     }
 }
 
-fn at(c: &Coordinate, f: &ScalarFragment, values: &Values) -> [f32; 3] {
+pub(super) fn at(c: &Coordinate, f: &ScalarFragment, values: &Values) -> [f32; 3] {
     let origin = match c.of {
         Origin::Varyings(first) => [0, 1, 2].map(|k| f.varyings[first + k]),
         Origin::Position => [f.x as f32 + 0.5, f.y as f32 + 0.5, f.depth],
@@ -153,11 +153,11 @@ fn changes(at: &[[f32; 3]; 4], i: usize) -> [[f32; 3]; 2] {
     [minus(2 * row + 1, 2 * row), minus(2 + column, column)]
 }
 
-fn integer(t: &TexelAt, f: &ScalarFragment) -> [i32; 3] {
+pub(super) fn integer(t: &TexelAt, f: &ScalarFragment) -> [i32; 3] {
     let [x, y] = [f.x, f.y].map(|v| (v >> t.shift) as i32);
     [x + t.offset[0], y + t.offset[1], t.offset[2]]
 }
 
-fn halves(bits: u32) -> [f32; 4] {
+pub(super) fn halves(bits: u32) -> [f32; 4] {
     [(bits & 0xffff) as f32, (bits >> 16) as f32, 0.0, 1.0]
 }

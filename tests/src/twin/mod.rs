@@ -10,6 +10,7 @@ mod block;
 mod case;
 mod clip;
 mod color;
+mod context_look_up;
 mod convert;
 mod coverage;
 mod depth;

@@ -6,7 +6,7 @@ use gnomon_raster::Recording;
 use gnomon_traces::Meta;
 
 use crate::error::CliError;
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 
 /// One of the two.
 pub(crate) struct Side<'a> {

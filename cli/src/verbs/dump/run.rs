@@ -11,7 +11,7 @@ use super::images;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::Batch;
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 
 /// Prints a line for each texture, pass and draw of a frame. Only data needs shaders.
 pub(crate) fn run(args: &DumpArgs) -> Result<(), CliError> {

@@ -4,7 +4,7 @@ use super::args::InfoArgs;
 use super::document::TraceDocument;
 use crate::error::CliError;
 use crate::output::{self, numbers};
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 
 /// Prints what the trace says and holds.
 pub(crate) fn run(args: &InfoArgs) -> Result<(), CliError> {

@@ -8,7 +8,7 @@ use super::document::PixelDocument;
 use super::text::text;
 use crate::error::CliError;
 use crate::output;
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 
 /// A frame, and what happened to a pixel of it.
 pub(crate) struct Shown {

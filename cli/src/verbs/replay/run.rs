@@ -7,7 +7,7 @@ use super::picture::picture;
 use crate::error::CliError;
 use crate::output::files::{Batch, check_extension};
 use crate::output::{self, numbers, png};
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 
 /// Replays one frame or all; a difference is an error of its own.
 pub(crate) fn run(args: &ReplayArgs) -> Result<(), CliError> {

@@ -10,7 +10,7 @@ use super::args::ReportArgs;
 use super::measure::{Observe, Subject, refuse_gpu};
 use crate::draw::Picture;
 use crate::error::CliError;
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 
 /// Whether the page is of a recorded frame.
 pub(super) fn is_trace(args: &ReportArgs) -> bool {

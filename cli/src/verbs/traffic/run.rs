@@ -15,7 +15,7 @@ use super::table;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::Batch;
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 
 /// Judges, writes and prints.
 pub(crate) fn run(args: &TrafficArgs) -> Result<(), CliError> {

@@ -6,7 +6,7 @@ use super::args::TrimArgs;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::{Batch, check_extension};
-use crate::traces::TraceFile;
+use crate::traces_of_frames::TraceFile;
 use crate::verbs::info::TraceDocument;
 
 /// Writes the trace that is asked for, or nothing.

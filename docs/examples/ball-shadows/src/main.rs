@@ -13,25 +13,24 @@
 
 use std::process::ExitCode;
 
-use gnomon_pipeline::param_list;
-use gnomon_pipeline::parts::frame_settings::FrameSettings;
-use gnomon_pipeline::parts::passes::{LitTest, View};
-use gnomon_pipeline::parts::shadowed_frame::{LightTurn, ShadowedFrame};
-use gnomon_pipeline::parts::visibility::{
+use gnomon::pipeline::param_list;
+use gnomon::pipeline::parts::frame_settings::FrameSettings;
+use gnomon::pipeline::parts::passes::{LitTest, View};
+use gnomon::pipeline::parts::shadowed_frame::{LightTurn, ShadowedFrame};
+use gnomon::pipeline::parts::visibility::{
     Positions, VisibilityTexture, attachment, binding, full_screen,
 };
-use gnomon_pipeline::technique::{
+use gnomon::pipeline::technique::{
     Capabilities, Frame, Param, ParamInfo, Params, Pass, PassRole, ShadowKind, Technique,
     TechniqueError,
 };
-use gnomon_pipeline::techniques::Registry;
-use gnomon_pipeline::world::scene::{Object, Scene};
-use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader, FragmentStage};
-use gnomon_raster::state::{BlendState, ColorTargetState, DepthStencilState, PrimitiveState};
-use gnomon_raster::{
+use gnomon::pipeline::world::scene::{Object, Scene};
+use gnomon::raster::shader::{Fragment, FragmentOutputs, FragmentShader, FragmentStage};
+use gnomon::raster::state::{BlendState, ColorTargetState, DepthStencilState, PrimitiveState};
+use gnomon::raster::{
     Draw, F32, Format, I32, Lanes, LoadOp, RenderPass, RenderPipeline, TextureDescriptor,
 };
-use gnomon_shaders::transform::FullScreen;
+use gnomon::shaders::transform::FullScreen;
 
 /// The technique.
 struct BallShadows;
@@ -218,25 +217,23 @@ fn dot<L: Lanes>(a: [F32<L>; 3], b: [F32<L>; 3]) -> F32<L> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The built-in techniques and this one.
-fn registry() -> Registry {
-    let mut registry = Registry::built_in();
-    if let Err(error) = registry.register(&BallShadows) {
-        eprintln!("error: {error}");
-    }
-    registry
-}
-
 fn main() -> ExitCode {
-    gnomon::run_with(&registry(), std::env::args_os())
+    gnomon::main_with(&[&BallShadows])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
-    use gnomon_pipeline::world::scene::builtin;
-    use gnomon_raster::{GpuConfig, SimdLevel};
+    use gnomon::pipeline::measure::render::{RenderSettings, Rendered, render};
+    use gnomon::pipeline::techniques::Registry;
+    use gnomon::pipeline::world::scene::builtin;
+    use gnomon::raster::GpuConfig;
+
+    fn registry() -> Registry {
+        let mut registry = Registry::built_in();
+        registry.register(&BallShadows).unwrap();
+        registry
+    }
 
     fn drawn(set: &[&str], gpu: GpuConfig) -> Rendered {
         let scene = builtin::build("spheres").unwrap();
@@ -271,23 +268,12 @@ mod tests {
         assert_eq!(hard.iter().sum::<usize>(), soft.iter().sum::<usize>());
     }
 
+    /// What the built-in techniques are held to; its stage has no name in the table.
     #[test]
-    fn bits_are_those_of_every_thread_count_and_simd_level() {
-        let hash = |threads, simd| {
-            let gpu = GpuConfig {
-                threads,
-                simd,
-                ..GpuConfig::default()
-            };
-            let done = drawn(&[], gpu);
-            (done.color_hash(), done.visibility_hash())
-        };
-        let first = hash(1, GpuConfig::default().simd);
-        for simd in SimdLevel::available() {
-            for threads in [1, 3] {
-                assert_eq!(hash(threads, simd), first, "{threads} {simd:?}");
-            }
-        }
+    fn it_conforms() {
+        let report = gnomon::conformance::check(&BallShadows).unwrap();
+        assert!(report.frames > 10 && report.refused.is_empty(), "{report:?}");
+        assert_eq!(report.unnamed.len(), 1, "{:?}", report.unnamed);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::builtin::{self, BuiltinScene};
 use super::file::{self, Moment};
 use super::{Scene, SceneError, load_and_frame};
 use crate::world::files::Outside;
+use crate::world::model;
 use crate::world::scene::environment::{EnvironmentRequest, FittedMaps};
 
 /// Where scenes come from.
@@ -32,8 +33,8 @@ enum Kind {
 }
 
 impl SceneSource {
-    /// The source called `name`: a `.toml` scene file, an `.obj` model to be
-    /// framed, or else a built-in name. What the file names must lie in its folder.
+    /// The source called `name`: a `.toml` scene file, a model (`.obj`, `.ply`,
+    /// `.gltf`, `.glb`) to be framed, or else a built-in name. What the file names must lie in its folder.
     ///
     /// # Errors
     /// The file cannot be read, or there is no built-in scene of that name.
@@ -54,7 +55,7 @@ impl SceneSource {
                 text: file::read(path)?,
                 outside,
             },
-            Some("obj") => Kind::Model(Box::new(load_and_frame(path, outside)?)),
+            _ if model::is_model(path) => Kind::Model(Box::new(load_and_frame(path, outside)?)),
             _ => Kind::Builtin(builtin::find(name)?),
         };
         Ok(Self {

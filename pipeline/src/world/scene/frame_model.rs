@@ -1,8 +1,9 @@
 //! A lone model as a scene: on a ground plane, lit and framed, or with its own camera.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DMat4, DVec3};
 
 use super::{Camera, Material, Object, Scene, SceneWarning};
 use crate::world::adjacency::EdgeAdjacency;
@@ -17,6 +18,9 @@ const MODEL_SIZE: f64 = 2.0;
 
 /// Gap between model and ground, so that a flat base does not fight with it.
 const LIFT: f64 = 0.002;
+
+/// Name of the ground.
+const GROUND_NAME: &str = "ground";
 
 const MODEL: Material = Material::glossy([0.72, 0.66, 0.58], 0.2, 24.0);
 /// How models are shaded.
@@ -42,7 +46,7 @@ pub fn load_and_frame(path: &Path, outside: Outside) -> Result<Scene, ModelError
 
 /// Scales `model` to a largest extent of 2, stands it on a ground plane at
 /// y = 0, and sets a light and a camera round it. A mesh that is not closed
-/// stays a caster, with an `open-mesh` warning: a technique may refuse it.
+/// stays a caster by its generalised silhouette, with an `open-mesh` warning.
 ///
 /// # Panics
 /// A coordinate is not finite or beyond f32.
@@ -59,9 +63,9 @@ pub fn frame_model(name: &str, model: Shape) -> Scene {
 fn framed(name: &str, model: &Model) -> Scene {
     let frame = Frame::of(model);
     let height = frame.height;
-    let ground = shape::plane(12.0, 0.0).into_mesh(Shading::Flat);
-    let ground = ground.expect("the ground is finite");
-    let mut objects = vec![Object::new("ground", ground, GROUND).receiver_only()];
+    let camera = camera(height);
+    let ground = ground_across(camera.target - camera.eye);
+    let mut objects = vec![Object::new(GROUND_NAME, ground, GROUND).receiver_only()];
     let creased = |shape: Shape| {
         let creased = shape.into_mesh(CREASES);
         creased.expect("the model fits a box of size 2")
@@ -73,7 +77,36 @@ fn framed(name: &str, model: &Model) -> Scene {
     if lights.is_empty() {
         lights.push(Light::horizontal_square(above, 0.8));
     }
-    finished(name, Scene::new(camera(height), lights, objects), model)
+    finished(name, Scene::new(camera, lights, objects), model)
+}
+
+/// The ground of a framed model, turned so that its far end is level in a picture along
+/// `sight`.
+fn ground_across(sight: DVec3) -> Mesh {
+    let away = DVec3::new(sight.x, 0.0, sight.z);
+    // Straight down any turn will do.
+    let [sin, cos] = match away.length() {
+        length if length > 0.0 => [away.x / length, away.z / length],
+        _ => [0.0, 1.0],
+    };
+    let turn = DMat3::from_cols(
+        DVec3::new(cos, 0.0, -sin),
+        DVec3::Y,
+        DVec3::new(sin, 0.0, cos),
+    );
+    let ground = shape::plane(12.0, 0.0).transformed(DMat4::from_mat3(turn));
+    ground
+        .into_mesh(Shading::Flat)
+        .expect("the ground is finite")
+}
+
+/// Turns the ground of a framed model to the scene's camera.
+pub(super) fn turn_ground(scene: &mut Scene) {
+    let sight = scene.camera.target - scene.camera.eye;
+    let mut grounds = scene.objects.iter_mut();
+    if let Some(ground) = grounds.find(|o| o.name == GROUND_NAME && !o.casts) {
+        ground.mesh = Arc::new(ground_across(sight));
+    }
 }
 
 /// The file's own scene, in its own units.
@@ -100,6 +133,7 @@ fn light_above(model: &Model) -> Light {
 
 fn object(piece: &Piece, mesh: Mesh) -> Object {
     let mut object = Object::new(piece.name.clone(), mesh, MODEL);
+    object.open = true;
     object.parts.clone_from(&piece.parts);
     object
 }
@@ -214,7 +248,10 @@ fn open_warning<'a>(casters: impl Iterator<Item = &'a Object>) -> Option<SceneWa
         let first = found.get_or_insert_with(|| SceneWarning {
             code: "open-mesh",
             count: 0,
-            message: format!("the model is not closed: {report}"),
+            message: format!(
+                "the model is not closed: {report}; where shadows are made of volumes, they are of its \
+                 generalised silhouette (refuse it with --set open-casters=refuse)"
+            ),
         });
         first.count += offenders;
     }
@@ -224,8 +261,6 @@ fn open_warning<'a>(casters: impl Iterator<Item = &'a Object>) -> Option<SceneWa
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    use glam::DMat4;
 
     fn framed(shape: Shape) -> Scene {
         frame_model("thing", shape)
@@ -273,9 +308,33 @@ mod tests {
     }
 
     #[test]
+    fn the_far_end_of_the_ground_is_level() {
+        for (x, z) in [(1.1, 4.3), (-3.0, 0.5), (0.0, -2.0)] {
+            let mut scene = framed(shape::cylinder(16, 0.5, 0.0, 1.0));
+            scene.camera.eye = DVec3::new(x, 2.0, z);
+            scene.camera.target = DVec3::Y * 0.25;
+            turn_ground(&mut scene);
+            let [right, ..] = scene.camera.basis();
+            let sight = DVec3::new(-x, 0.0, -z);
+            let far = scene.objects[0]
+                .mesh
+                .positions()
+                .iter()
+                .map(|p| DVec3::from(p.map(f64::from)));
+            let far: Vec<DVec3> = far.filter(|p| p.dot(sight) > 0.0).collect();
+            assert_eq!(far.len(), 2);
+            let along = (far[1] - far[0]).normalize();
+            assert!(
+                (along.dot(right).abs() - 1.0).abs() < 1e-6,
+                "{along} {right}"
+            );
+        }
+    }
+
+    #[test]
     fn an_open_model_is_kept_and_flagged() {
         let scene = framed(shape::plane(3.0, 0.0));
-        assert!(scene.objects[1].casts);
+        assert!(scene.objects[1].casts && scene.objects[1].open);
         assert_eq!(
             (scene.warnings[0].code, scene.warnings[0].count),
             ("open-mesh", 4)

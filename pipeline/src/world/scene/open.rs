@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::file::SceneFileError;
-use super::{Scene, SceneSource};
+use super::{Scene, SceneSource, ViewError};
 use crate::world::environment::EnvironmentError;
 use crate::world::error::UnknownScene;
 use crate::world::model::ModelError;
@@ -23,6 +23,9 @@ pub enum SceneError {
     /// The environment is wrong.
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
+    /// It cannot be looked at so.
+    #[error(transparent)]
+    View(#[from] ViewError),
 }
 
 /// The scene called `name` at time 0: see [`SceneSource::open`].

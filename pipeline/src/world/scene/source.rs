@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::builtin::{self, BuiltinScene};
 use super::file::{self, Moment};
-use super::{Scene, SceneError, load_and_frame};
+use super::{Scene, SceneError, View, load_and_frame};
 use crate::world::files::Outside;
 use crate::world::model;
 use crate::world::scene::environment::{EnvironmentRequest, FittedMaps};
@@ -19,6 +19,7 @@ pub struct SceneSource {
     kind: Kind,
     environment: Option<EnvironmentRequest>,
     maps: FittedMaps,
+    view: View,
 }
 
 #[derive(Clone, Debug)]
@@ -62,6 +63,7 @@ impl SceneSource {
             kind,
             environment: None,
             maps: FittedMaps::default(),
+            view: View::default(),
         })
     }
 
@@ -69,6 +71,13 @@ impl SceneSource {
     #[must_use]
     pub fn with_environment(mut self, environment: Option<EnvironmentRequest>) -> Self {
         self.environment = environment;
+        self
+    }
+
+    /// Looks at every scene from elsewhere, or under other lights.
+    #[must_use]
+    pub fn with_view(mut self, view: View) -> Self {
+        self.view = view;
         self
     }
 
@@ -89,7 +98,9 @@ impl SceneSource {
                     environment: self.environment.as_ref(),
                     maps: &mut self.maps,
                 };
-                return Ok(file::named(path, text, &mut moment)?);
+                let mut scene = file::named(path, text, &mut moment)?;
+                self.view.apply(&mut scene, false)?;
+                return Ok(scene);
             }
             Kind::Builtin(entry) => entry.at(time),
             Kind::Model(scene) => (**scene).clone(),
@@ -97,6 +108,8 @@ impl SceneSource {
         if let Some(environment) = &self.environment {
             environment.light(&mut scene, &mut self.maps)?;
         }
+        let framed = matches!(self.kind, Kind::Model(_));
+        self.view.apply(&mut scene, framed)?;
         Ok(scene)
     }
 }

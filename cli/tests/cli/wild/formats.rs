@@ -116,7 +116,7 @@ fn scene_files_name_models_of_all_formats() {
     folder.write("f.toml", &both);
     folder
         .gnomon("render f.toml")
-        .refused(&["f.toml:6:", "duplicate"]);
+        .refused(&["f.toml:4:", "duplicate"]);
 }
 
 #[test]

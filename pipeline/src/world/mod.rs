@@ -4,6 +4,7 @@
 pub mod adjacency;
 pub mod environment;
 pub mod error;
+pub mod export;
 mod faces;
 pub mod files;
 pub mod light;

@@ -143,8 +143,10 @@ mod tests {
         let mut scene = builtin::build("cylinder").unwrap();
         let nowhere = view([1.0; 3], Some([1.0; 3])).apply(&mut scene, false);
         assert!(nowhere.unwrap_err().to_string().contains("[1, 1, 1]"));
-        let mut wide = View::default();
-        wide.fov_y_degrees = Some(180.0);
+        let wide = View {
+            fov_y_degrees: Some(180.0),
+            ..View::default()
+        };
         assert!(
             wide.apply(&mut scene, false)
                 .unwrap_err()

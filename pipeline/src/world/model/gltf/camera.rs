@@ -42,8 +42,9 @@ pub(super) fn at(
     let axis = |v| placed.model_from_node.transform_vector3(v);
     let [forward, up] = [axis(-DVec3::Z), axis(DVec3::Y)].map(|v| v / v.length());
     let eye = placed.model_from_node.transform_point3(DVec3::ZERO);
-    // The sine of the angle between them.
-    if !eye.is_finite() || !(forward.cross(up).length() > 1e-9) {
+    // Their sine is NaN for axes without a length.
+    let upright = forward.cross(up).length() > 1e-9;
+    if !eye.is_finite() || !upright {
         let valid = "a finite place, and axes that are not parallel";
         let value = format!("at {eye}, forward {forward}, up {up}");
         return Err(bad("the camera's node", value, valid));

@@ -38,8 +38,11 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Parts<'_>, GltfProblem> {
     Ok((json, buffer))
 }
 
+/// Kind and bytes of a chunk, and what is behind it.
+type Chunk<'a> = (&'a [u8], &'a [u8], &'a [u8]);
+
 /// The kind of the first chunk, its bytes, and what is behind it.
-fn chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), String> {
+fn chunk(bytes: &[u8]) -> Result<Chunk<'_>, String> {
     let cut = || "a chunk is cut short".to_owned();
     let length = word(bytes, 0).ok_or_else(cut)? as usize;
     let kind = bytes.get(4..8).ok_or_else(cut)?;

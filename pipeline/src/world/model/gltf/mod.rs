@@ -194,11 +194,8 @@ impl Build<'_> {
         }
         let parts = self.parts(&local)?;
         let shape = local.shape.transformed(model_from_node);
-        if shape
-            .positions
-            .iter()
-            .any(|p| !(p.abs().max_element() <= LARGEST))
-        {
+        let fits = |p: &glam::DVec3| p.to_array().iter().all(|c| c.abs() <= LARGEST);
+        if !shape.positions.iter().all(fits) {
             let (what, value) = (
                 "a coordinate",
                 "too large where the node puts it".to_owned(),

@@ -286,7 +286,8 @@ fn files_without_scenes_have_the_nodes_that_are_nobodys() {
     let nodes = json!([{"mesh": 0}, {"children": [0], "translation": [0, 7, 0]}]);
     let mut file = with(&[("/nodes", nodes)]);
     let table = file.as_object_mut().unwrap();
-    (table.remove("scene"), table.remove("scenes"));
+    table.remove("scene");
+    table.remove("scenes");
     let model = read(&file).unwrap();
     assert_eq!(model.pieces.len(), 1);
     assert_eq!(model.bounds().unwrap().0.y, 7.0);

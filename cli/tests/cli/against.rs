@@ -148,7 +148,11 @@ fn files_that_cannot_be_compared_are_refused() {
             "--against mine.npy --techniques unshadowed",
             &["--techniques"],
         ),
-        ("--truth mine.npy --techniques unshadowed", &["--against"]),
+        (
+            "--truth mine.npy --techniques unshadowed",
+            &["--truth", "--techniques"],
+        ),
+        ("--truth mine.npy", &["--against"]),
     ] {
         folder
             .gnomon(&format!("compare cylinder {flags}"))

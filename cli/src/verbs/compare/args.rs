@@ -24,7 +24,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["techniques", "settings", "env"])]
     pub(crate) against: Option<PathBuf>,
     /// The truth for --against, visibility as .npy (height, width) [default: --reference]
-    #[arg(long, value_name = "FILE.npy", requires = "against")]
+    #[arg(long, value_name = "FILE.npy", requires = "against", conflicts_with_all = ["techniques", "settings", "env"])]
     pub(crate) truth: Option<PathBuf>,
     /// A parameter of all entries of a technique; may be repeated
     #[arg(long = "set", value_name = "TECHNIQUE.KEY=VALUE", value_parser = parse_technique_setting)]

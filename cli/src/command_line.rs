@@ -13,6 +13,7 @@ use crate::verbs::debug::DebugArgs;
 use crate::verbs::demo::DemoArgs;
 use crate::verbs::diff::DiffArgs;
 use crate::verbs::dump::DumpArgs;
+use crate::verbs::export::ExportArgs;
 use crate::verbs::info::InfoArgs;
 use crate::verbs::light::LightArgs;
 use crate::verbs::pixel::PixelArgs;
@@ -83,6 +84,8 @@ pub(crate) enum Verb {
     Light(LightArgs),
     /// Show the penumbra wedge of one silhouette edge, and what the edge covers
     Wedge(WedgeArgs),
+    /// Write a scene as glTF and OBJ, with camera, lights and matrices, for other programs
+    Export(ExportArgs),
     /// List the built-in scenes
     Scenes(ListArgs),
     /// List the techniques and their parameters
@@ -109,6 +112,7 @@ impl Verb {
             Self::Light(args) => verbs::light::run(args),
             Self::Wedge(args) => verbs::wedge::run(args),
             Self::Dump(args) => verbs::dump::run(args),
+            Self::Export(args) => verbs::export::run(args),
             Self::Trim(args) => verbs::trim::run(args),
             Self::Reproduce(args) => verbs::reproduce::run(args),
             Self::Stress(args) => verbs::stress::run(args, registry),

@@ -8,7 +8,8 @@ use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::scene::{Scene, SceneError, SceneSource};
 
 use super::{
-    EnvArgs, GpuArgs, SceneArgs, parameters, parse_rate, parse_setting, parse_size, parse_time,
+    EnvArgs, GpuArgs, SceneArgs, ViewArgs, parameters, parse_rate, parse_setting, parse_size,
+    parse_time,
 };
 use crate::error::CliError;
 use crate::output::progress::Progress;
@@ -58,6 +59,9 @@ pub(crate) struct FrameArgs {
     /// A map that lights the scene.
     #[command(flatten)]
     pub(crate) environment: EnvArgs,
+    /// Another eye and other lights.
+    #[command(flatten)]
+    pub(crate) view: ViewArgs,
     /// Most area lights fitted to the map, 1 to 1024 [default: 30]
     #[arg(long, value_name = "N", requires = "env")]
     pub(crate) lights: Option<usize>,
@@ -67,7 +71,8 @@ impl FrameArgs {
     /// Scenes by time, under the environment that was asked for.
     pub(crate) fn source(&self) -> Result<SceneSource, SceneError> {
         let request = self.environment.request(self.lights);
-        Ok(self.scene.open()?.with_environment(request))
+        let source = self.scene.open()?.with_environment(request);
+        Ok(source.with_view(self.view.view()))
     }
 
     /// Has `technique` compute ahead what it needs for `scene`, or read it.

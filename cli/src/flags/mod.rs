@@ -7,6 +7,7 @@ mod listing;
 mod scene;
 mod settings;
 mod values;
+mod view;
 
 pub(crate) use environment::EnvArgs;
 pub(crate) use execution::GpuArgs;
@@ -15,3 +16,4 @@ pub(crate) use listing::ListArgs;
 pub(crate) use scene::SceneArgs;
 pub(crate) use settings::parameters;
 pub(crate) use values::{parse_rate, parse_setting, parse_size, parse_time};
+pub(crate) use view::ViewArgs;

@@ -7,7 +7,7 @@ use gnomon_pipeline::world::scene::{SceneError, SceneSource};
 /// What to draw.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
-    /// Built-in scene (see `gnomon scenes`), .toml scene file or .obj model
+    /// Built-in scene (see `gnomon scenes`), .toml scene file, or model (.obj, .ply, .gltf, .glb)
     pub(crate) scene: String,
     /// Read files outside the scene's folder too, where the scene names them
     #[arg(long)]

@@ -36,9 +36,131 @@ pub(crate) fn encode_texels(size: [u32; 2], kind: &str, channels: usize, bytes: 
 
 const PREFIX: &[u8] = b"\x93NUMPY\x01\x00";
 
+/// An array as it was read.
+pub(crate) struct Array {
+    /// Width and height.
+    pub(crate) size: [u32; 2],
+    /// Numbers of each texel.
+    pub(crate) channels: usize,
+    /// Row by row, texel by texel. Numbers of 8 bits are shares of 255, as booleans are of 1.
+    pub(crate) values: Vec<f64>,
+}
+
+const VALID: &str = "expected a NumPy array (height, width) or (height, width, channels) of \
+    float32, float64, uint8 or bool, in C order";
+
+/// Reads an array; the error says what is wrong.
+pub(crate) fn decode(file: &[u8]) -> Result<Array, String> {
+    let (header, data) = parts(file).ok_or(VALID)?;
+    if !header.contains("'fortran_order': False") {
+        return Err(format!("is not in C order; {VALID}"));
+    }
+    let kind = after(header, "'descr':").and_then(|t| t.split('\'').nth(1));
+    let shape = after(header, "'shape':").and_then(|t| t.split(['(', ')']).nth(1));
+    let (kind, shape) = kind.zip(shape).ok_or(VALID)?;
+    let sides = shape.split(',').map(str::trim).filter(|s| !s.is_empty());
+    let sides: Option<Vec<u32>> = sides.map(|s| s.parse().ok()).collect();
+    let (height, width, channels) = match sides.as_deref() {
+        Some(&[h, w]) => (h, w, 1),
+        Some(&[h, w, c]) => (h, w, c as usize),
+        _ => return Err(format!("has the shape ({shape}); {VALID}")),
+    };
+    let read = reader(kind).ok_or_else(|| format!("is of '{kind}'; {VALID}"))?;
+    let count = u128::from(height) * u128::from(width) * channels as u128;
+    if count * read.bytes as u128 != data.len() as u128 {
+        let had = data.len();
+        return Err(format!(
+            "has {had} bytes of data, and the shape ({shape}) of '{kind}'"
+        ));
+    }
+    let values = data.chunks_exact(read.bytes).map(read.value).collect();
+    let size = [width, height];
+    Ok(Array {
+        size,
+        channels,
+        values,
+    })
+}
+
+fn after<'a>(header: &'a str, key: &str) -> Option<&'a str> {
+    header.split_once(key).map(|(_, rest)| rest)
+}
+
+/// Header and data.
+fn parts(file: &[u8]) -> Option<(&str, &[u8])> {
+    let rest = file.strip_prefix(b"\x93NUMPY")?;
+    let (&major, rest) = rest.split_first()?;
+    let rest = rest.get(1..)?;
+    let (length, rest) = if major == 1 {
+        let (length, rest) = rest.split_first_chunk::<2>()?;
+        (u32::from(u16::from_le_bytes(*length)), rest)
+    } else {
+        let (length, rest) = rest.split_first_chunk::<4>()?;
+        (u32::from_le_bytes(*length), rest)
+    };
+    let (header, data) = rest.split_at_checked(length as usize)?;
+    Some((std::str::from_utf8(header).ok()?, data))
+}
+
+struct Reader {
+    bytes: usize,
+    value: fn(&[u8]) -> f64,
+}
+
+/// How numbers are read that NumPy calls `kind`.
+fn reader(kind: &str) -> Option<Reader> {
+    let (bytes, value): (usize, fn(&[u8]) -> f64) = match kind {
+        "<f4" => (4, |b| {
+            f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        }),
+        ">f4" => (4, |b| {
+            f64::from(f32::from_be_bytes([b[0], b[1], b[2], b[3]]))
+        }),
+        "<f8" => (8, |b| f64::from_le_bytes(std::array::from_fn(|k| b[k]))),
+        ">f8" => (8, |b| f64::from_be_bytes(std::array::from_fn(|k| b[k]))),
+        "|u1" => (1, |b| f64::from(b[0]) / 255.0),
+        "|b1" => (1, |b| f64::from(u8::from(b[0] != 0))),
+        _ => return None,
+    };
+    Some(Reader { bytes, value })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn arrays_are_read_as_they_were_written() {
+        let array = decode(&encode([3, 2], &[0.0, 1.0, 2.0, 3.0, 4.5, f32::INFINITY])).unwrap();
+        assert_eq!((array.size, array.channels), ([3, 2], 1));
+        assert_eq!(array.values, [0.0, 1.0, 2.0, 3.0, 4.5, f64::INFINITY]);
+        assert_eq!(decode(&encode_f64([1, 1], &[0.1])).unwrap().values, [0.1]);
+        let bytes = decode(&encode_texels([1, 1], "|u1", 3, &[255, 0, 51])).unwrap();
+        assert_eq!((bytes.channels, bytes.values), (3, vec![1.0, 0.0, 0.2]));
+        let big = encode_texels([1, 1], ">f4", 1, &1.5_f32.to_be_bytes());
+        assert_eq!(decode(&big).unwrap().values, [1.5]);
+    }
+
+    #[test]
+    fn what_is_no_array_is_refused() {
+        let good = encode([2, 2], &[0.0; 4]);
+        let refused = |bytes: &[u8]| decode(bytes).err().unwrap();
+        for cut in 0..good.len() {
+            refused(&good[..cut]);
+        }
+        let with = |from: &str, to: &str| {
+            let text: Vec<u8> = good.clone();
+            let at = text
+                .windows(from.len())
+                .position(|w| w == from.as_bytes())
+                .unwrap();
+            [&text[..at], to.as_bytes(), &text[at + from.len()..]].concat()
+        };
+        assert!(refused(&with("<f4", "<i4")).contains("'<i4'"));
+        assert!(refused(&with("False", "True ")).contains("C order"));
+        assert!(refused(&with("(2, 2)", "(4,)  ")).contains("(4,)"));
+        assert!(refused(&with("(2, 2)", "(2, 3)")).contains("16 bytes of data"));
+    }
 
     #[test]
     fn header_is_aligned_and_data_follow() {

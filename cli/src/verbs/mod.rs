@@ -7,6 +7,7 @@ pub(crate) mod debug;
 pub(crate) mod demo;
 pub(crate) mod diff;
 pub(crate) mod dump;
+pub(crate) mod export;
 pub(crate) mod info;
 pub(crate) mod light;
 pub(crate) mod pixel;

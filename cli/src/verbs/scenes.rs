@@ -53,6 +53,6 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), CliError> {
         let name = format!("{:widest$}  ", scene.name);
         text += &hanging(&name, widest + 2, scene.description);
     }
-    text += "\nRender one with `gnomon render NAME`, or give a .toml scene or an .obj model.";
+    text += "\nRender one with `gnomon render NAME`, or give a .toml scene or a model\n(.obj, .ply, .gltf, .glb).";
     output::print(&text)
 }

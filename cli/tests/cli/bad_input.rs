@@ -135,17 +135,52 @@ fn unreadable_scenes_name_file_and_place() {
 }
 
 #[test]
-fn open_casters_are_refused_with_the_remedy() {
+fn open_casters_of_scenes_are_refused_with_the_remedy() {
     let folder = Folder::new("open");
     folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    refused(
-        &folder,
-        "render open.obj --size 32x32",
-        &["not closed", "--set open-casters=generalised"],
+    folder.write(
+        "s.toml",
+        "[camera]\neye = [0, 2, 5]\ntarget = [0, 0, 0]\n[[lights]]\n\
+         shape.point.position = [0, 5, 0]\n[[objects]]\nmesh.obj = \"open.obj\"\n",
     );
+    for scene in ["s.toml", "open.obj --set open-casters=refuse"] {
+        refused(
+            &folder,
+            &format!("render {scene} --size 32x32"),
+            &["not closed", "--set open-casters=generalised"],
+        );
+    }
     folder
-        .gnomon("render open.obj --size 32x32 --set open-casters=generalised")
+        .gnomon("render s.toml --size 32x32 --set open-casters=generalised")
         .fine();
+}
+
+/// A model named on the command line casts by its generalised silhouette, and says so.
+#[test]
+fn open_models_are_drawn_with_a_warning() {
+    let folder = Folder::new("open-model");
+    folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0.2\nf 1 2 3\n");
+    for technique in ["shadow-volumes", "soft-shadow-volumes", "penumbra-wedges"] {
+        let draw = |more: &str| {
+            let line =
+                format!("render open.obj --technique {technique} --size 64x48 --json {more}");
+            folder.gnomon(&line).json()
+        };
+        let [plain, asked] = ["", "--set open-casters=generalised"].map(draw);
+        assert_eq!(plain["hash"], asked["hash"], "{technique}");
+        let warning = &plain["warnings"][0];
+        assert_eq!(warning["code"], "open-mesh");
+        let message = warning["message"].as_str().unwrap();
+        assert!(message.contains("generalised silhouette"), "{message}");
+    }
+    let compare = "compare open.obj --techniques shadow-volumes,unshadowed --size 64x48 --json";
+    let document = folder.gnomon(compare).json();
+    let umbra = |k: usize| document["results"][k]["rmse_umbra"].as_f64().unwrap();
+    assert_eq!(
+        [umbra(0), umbra(1)],
+        [0.0, 1.0],
+        "it has a shadow, all of it"
+    );
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The program from outside: a module for each verb or promise, in one binary, which
 //! is linked once.
 
+mod against;
 mod attack;
 mod bad_input;
 mod bench;
@@ -9,6 +10,7 @@ mod common;
 mod compare;
 mod draws;
 mod environment;
+mod export;
 mod light_images;
 mod looking_inside;
 mod overlays;

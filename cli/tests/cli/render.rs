@@ -256,3 +256,53 @@ fn obj_models_have_their_materials() {
     let message = warnings[0]["message"].as_str().unwrap();
     assert!(message.contains("paint.mtl:2: 'Kd 0.9 oops'"), "{message}");
 }
+
+#[test]
+fn eyes_and_lights_can_be_given() {
+    let folder = Folder::new("view");
+    folder.write(
+        "cube.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
+    );
+    let draw = |more: &str| {
+        let line = format!("render cube.obj --size 64x48 --json --out a.png {more}");
+        let document = folder.gnomon(&line).json();
+        (
+            document["hash"]["visibility"].clone(),
+            image::open(folder.path("a.png")).unwrap().into_rgb8(),
+        )
+    };
+    // Straight down on a framed cube: its top is in the middle, ground all round.
+    let (above, top) = draw("--eye 0,9,0 --target 0,0,0 --fov 30 --light directional:0,1,0");
+    let [middle, corner] = [top.get_pixel(32, 24), top.get_pixel(1, 1)];
+    // The material has a highlight in the middle.
+    let near = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| {
+        let pairs = a.0.iter().zip(b.0);
+        pairs.clone().all(|(a, b)| a.abs_diff(b) < 12)
+    };
+    assert!(near(top.get_pixel(28, 24), middle), "a square of one color");
+    assert!(!near(middle, corner) && top.get_pixel(62, 46) == corner);
+    let (lower, _) = draw("--eye 0,2,-6");
+    assert_ne!(above, lower);
+    // Red light alone.
+    let (_, red) = draw(
+        "--eye 0,9,0 --target 0,0,0 --fov 30 --light point:0,8,0:1,0,0 --light sphere:0,8,1,0.1:0,0,0",
+    );
+    let [r, g, b] = red.get_pixel(32, 24).0;
+    assert!(r > 2 * g && g.abs_diff(b) < 40, "{r} {g} {b}");
+    for (flags, part) in [
+        ("--eye 1,2", "0,1.5,4"),
+        (
+            "--eye 1,2,3 --target 1,2,3",
+            "the eye and its target are both",
+        ),
+        ("--fov 0", "above 0 and below 180"),
+        ("--light lamp:1,2,3", "square:X,Y,Z,SIDE"),
+        ("--light point:1,2,3 --env sky", "--env"),
+    ] {
+        folder
+            .gnomon(&format!("render cube.obj {flags}"))
+            .refused(&[part]);
+    }
+}

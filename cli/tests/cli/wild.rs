@@ -2,6 +2,7 @@
 //! bring is read as they mean it, or refused with its place.
 
 mod edges;
+mod formats;
 mod maps;
 mod models;
 mod paint;

@@ -22,15 +22,30 @@ pub enum CasterPolicy {
     RequireClosed,
     /// Give them the generalised, multiplicity-weighted silhouette.
     Generalised,
+    /// That for objects which may be open, as [`Object::open`] says; refuse others. What
+    /// techniques do that are told nothing.
+    AsObjectsSay,
 }
 
 impl CasterPolicy {
-    /// Values of the parameter `open-casters`, in the order of the variants.
+    /// Values of the parameter `open-casters`.
     pub const NAMES: [&str; 2] = ["refuse", "generalised"];
 
-    /// The parameter value that selects this policy.
+    /// The parameter value that selects this policy, or that stands where none is given.
     pub const fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
+        match self {
+            Self::RequireClosed | Self::AsObjectsSay => Self::NAMES[0],
+            Self::Generalised => Self::NAMES[1],
+        }
+    }
+
+    /// Whether an open `object` may cast.
+    fn allows(self, object: &Object) -> bool {
+        match self {
+            Self::RequireClosed => false,
+            Self::Generalised => true,
+            Self::AsObjectsSay => object.open,
+        }
     }
 }
 
@@ -78,7 +93,7 @@ impl Caster {
     /// The mesh is not closed and the policy requires it.
     pub fn of_object(object: &Object, policy: CasterPolicy) -> Result<Self, RefusedCaster> {
         let caster = Self::new(&object.mesh);
-        if caster.report.is_closed() || policy == CasterPolicy::Generalised {
+        if caster.report.is_closed() || policy.allows(object) {
             return Ok(caster);
         }
         Err(RefusedCaster {

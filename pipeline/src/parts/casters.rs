@@ -3,7 +3,7 @@
 use crate::geometry::caster::{Caster, CasterPolicy, Counting};
 use crate::geometry::silhouette::{Orientation, Silhouette};
 use crate::geometry::slivers::{Slivers, facing};
-use crate::technique::{Choice, Param, TechniqueError};
+use crate::technique::{Choice, Param, Params, TechniqueError};
 use crate::world::light::HardLight;
 use crate::world::scene::{Object, Scene};
 
@@ -15,8 +15,18 @@ impl Choice for CasterPolicy {
 pub(crate) const OPEN_CASTERS: Param<CasterPolicy> = Param::choice(
     "open-casters",
     CasterPolicy::RequireClosed.name(),
-    "casters that are not closed: refuse them, or use the multiplicity-weighted silhouette",
+    "casters that are not closed: refuse them (models named on the command line only if \
+     this is given), or use the multiplicity-weighted silhouette",
 );
+
+/// What to do with open casters: as told, or else as the objects say.
+pub(crate) fn open_casters(params: &Params) -> Result<CasterPolicy, TechniqueError> {
+    let told = params.get(&OPEN_CASTERS)?;
+    Ok(match params.is_given(OPEN_CASTERS.info.name) {
+        true => told,
+        false => CasterPolicy::AsObjectsSay,
+    })
+}
 
 pub(crate) const SKIP: Param<bool> = Param::switch(
     "skip",

@@ -4,16 +4,20 @@
 pub mod adjacency;
 pub mod environment;
 pub mod error;
+pub mod export;
+mod faces;
 pub mod files;
 pub mod light;
 pub mod light_image;
 pub mod material;
 pub(crate) mod memo;
 pub mod mesh;
+pub mod model;
 pub mod obj;
 pub mod plates;
 pub mod scene;
 pub mod shape;
+mod tally;
 pub mod warning;
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub(crate) struct BenchArgs {
     /// Join results instead of measuring.
     #[command(subcommand)]
     pub(crate) verb: Option<BenchVerb>,
-    /// Scenes: built-in, .toml or .obj; or one suite: `standard`, or a .toml file with a
+    /// Scenes: built-in, .toml or models; or one suite: `standard`, or a .toml file with a
     /// table [suite]
     #[arg(value_name = "SCENE|SUITE", required = true)]
     pub(crate) scenes: Vec<String>,

@@ -16,8 +16,16 @@ pub(crate) struct CompareArgs {
     pub(crate) scene: SceneArgs,
     /// Techniques (see `gnomon techniques`), each with settings of its own behind
     /// colons if need be: NAME:KEY=VALUE:...
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', required = true, value_parser = parse_entry)]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', required_unless_present = "against", value_parser = parse_entry)]
     pub(crate) techniques: Vec<EntryArg>,
+    /// Somebody else's image of the scene instead of techniques: visibility as .npy
+    /// (height, width) or gray .png, or a picture as .npy (height, width, 3) or .exr of
+    /// linear RGB, or .png of sRGB. What differs, where, and on which side of the truth
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["techniques", "settings", "env"])]
+    pub(crate) against: Option<PathBuf>,
+    /// The truth for --against, visibility as .npy (height, width) [default: --reference]
+    #[arg(long, value_name = "FILE.npy", requires = "against", conflicts_with_all = ["techniques", "settings", "env"])]
+    pub(crate) truth: Option<PathBuf>,
     /// A parameter of all entries of a technique; may be repeated
     #[arg(long = "set", value_name = "TECHNIQUE.KEY=VALUE", value_parser = parse_technique_setting)]
     pub(crate) settings: Vec<TechniqueSetting>,
@@ -66,6 +74,7 @@ pub(crate) struct CompareArgs {
 const COMPARE_HELP: &str = "\
 Example: gnomon compare cylinder \
 --techniques shadow-volumes,sampled-shadow-volumes:samples=16,sampled-shadow-volumes:samples=256
+Your own renderer: gnomon compare cylinder --against mine.npy
 With --env: gnomon compare creature --env sky --lights 30,60 --techniques soft-shadow-volumes
 
 Exit codes: 0 fine, 2 bad input.";

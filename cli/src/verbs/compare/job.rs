@@ -68,6 +68,32 @@ impl CompareJob {
         })
     }
 
+    /// What somebody else's image of `size` is held against.
+    pub(super) fn against(args: &CompareArgs, size: [u32; 2]) -> Result<Self, CliError> {
+        let scene = args.scene.open()?.at(args.time)?;
+        let (given, count) = (args.light, scene.lights.len());
+        if given >= count {
+            return Err(CompareError::NoSuchLight { given, count }.into());
+        }
+        let name = verbs::file_stem(&scene.name);
+        let out = args.out_dir.join(format!("{name}-against.png"));
+        files::check_target(&out)?;
+        Ok(Self {
+            light: args.light,
+            image: None,
+            entries: Vec::new(),
+            reference: args.reference,
+            cache: OracleCache::new(args.out_dir.join("oracle-cache")),
+            settings: RenderSettings {
+                size,
+                gpu: args.gpu.config(),
+                repeat: 1,
+            },
+            scene,
+            out,
+        })
+    }
+
     /// Steps of progress: rows of the truth, techniques, the picture.
     pub(super) fn steps(&self) -> u64 {
         u64::from(self.settings.size[1]) + self.entries.len() as u64 + 1

@@ -1,5 +1,6 @@
 //! `gnomon compare`: techniques against the truth, in errors, time and bytes.
 
+mod against;
 mod args;
 mod document;
 mod environment;

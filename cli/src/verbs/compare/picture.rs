@@ -10,9 +10,9 @@ use crate::output::tables;
 use crate::overlay;
 
 /// Where no surface is seen.
-const NOTHING: [u8; 3] = [58, 60, 66];
+pub(super) const NOTHING: [u8; 3] = [58, 60, 66];
 /// Where truth and picture may see different surfaces, and were not compared.
-const OTHER: [u8; 3] = [165, 165, 165];
+pub(super) const OTHER: [u8; 3] = [165, 165, 165];
 
 /// Draws the comparison.
 pub(super) fn draw(job: &CompareJob, found: &Comparison) -> Picture {
@@ -75,7 +75,7 @@ fn technique(measured: &Measured) -> Cell {
 }
 
 /// Colour of an error; `truth` is NaN where there is none.
-fn signed(value: f64, truth: f64) -> [u8; 3] {
+pub(super) fn signed(value: f64, truth: f64) -> [u8; 3] {
     match (value.is_nan(), truth.is_nan()) {
         (true, true) => NOTHING,
         (false, false) => diverging(place(value - truth)),
@@ -83,14 +83,14 @@ fn signed(value: f64, truth: f64) -> [u8; 3] {
     }
 }
 
-fn grey(visibility: f64) -> [u8; 3] {
+pub(super) fn grey(visibility: f64) -> [u8; 3] {
     if visibility.is_nan() {
         return NOTHING;
     }
     [(visibility * 255.0).round() as u8; 3]
 }
 
-fn painted(size: [u32; 2], colours: impl Iterator<Item = [u8; 3]>) -> Canvas {
+pub(super) fn painted(size: [u32; 2], colours: impl Iterator<Item = [u8; 3]>) -> Canvas {
     Canvas::showing(&Picture {
         size,
         pixels: colours.map(|[r, g, b]| [r, g, b, 255]).collect(),

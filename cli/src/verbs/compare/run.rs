@@ -6,7 +6,7 @@ use super::args::CompareArgs;
 use super::document::CompareDocument;
 use super::job::CompareJob;
 use super::measure::{self, Comparison, Measured};
-use super::{environment, picture, table};
+use super::{against, environment, picture, table};
 use crate::error::CliError;
 use crate::output::files::Batch;
 use crate::output::json::{FileDocument, worker_threads};
@@ -15,6 +15,9 @@ use crate::output::{self, numbers, png};
 
 /// Renders, measures, draws and prints.
 pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliError> {
+    if args.against.is_some() {
+        return against::run(args, registry);
+    }
     if args.environment.env.is_some() {
         return environment::run(args, registry);
     }

@@ -33,6 +33,10 @@ pub(crate) struct RenderArgs {
     /// Frames to time; the median is reported
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) repeat: u32,
+    /// Hold the render against the JSON document of an earlier one, and say what differs:
+    /// hashes, parameters, counters; exit code 1 if anything does
+    #[arg(long, value_name = "BASELINE.json", conflicts_with = "frames")]
+    pub(crate) expect: Option<PathBuf>,
     /// Print one JSON document on stdout, the summary on stderr
     #[arg(long)]
     pub(crate) json: bool,

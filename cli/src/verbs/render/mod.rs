@@ -1,6 +1,7 @@
 //! `gnomon render`: one frame of a scene, or an animation.
 
 mod args;
+mod expect;
 mod frames;
 mod job;
 mod run;

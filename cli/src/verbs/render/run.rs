@@ -5,6 +5,7 @@ use gnomon_pipeline::measure::wedge_work::WedgeWork;
 use gnomon_pipeline::techniques::Registry;
 
 use super::args::RenderArgs;
+use super::expect::Baseline;
 use super::frames;
 use super::job::RenderJob;
 use super::write::write;
@@ -20,6 +21,7 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
         return frames::run(args, registry, count);
     }
     let progress = Progress::new(3 + args.overlay.len() as u64);
+    let baseline = args.expect.as_deref().map(Baseline::read).transpose()?;
     progress.doing("loading the scene");
     let job = RenderJob::new(args, registry)?;
     progress.step();
@@ -30,14 +32,22 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     progress.step();
     let files = write(&job, args, &done, &progress)?;
     drop(progress);
+    let document = job.document(&done, files.clone());
+    let found = baseline.map(|b| (b.differences(&document), b));
     if args.json {
-        output::print_json(&job.document(&done, files.clone()))?;
+        output::print_json(&document)?;
     }
     let mut text = summarise(&job, &done, &files);
     if args.draws {
         text += &describe_draws(&done);
     }
-    output::print_summary(&text, args.json)
+    let mut same = true;
+    if let Some((differences, baseline)) = found {
+        text += &format!("\n{}", baseline.tell(&differences));
+        same = differences.is_empty();
+    }
+    output::print_summary(&text, args.json)?;
+    if same { Ok(()) } else { Err(CliError::Differs) }
 }
 
 /// Work and traffic of every draw.

@@ -10,7 +10,7 @@ use crate::flags::{GpuArgs, parse_size};
 #[derive(Debug, Args)]
 #[command(after_help = STRESS_HELP)]
 pub(crate) struct StressArgs {
-    /// Built-in scene, .toml scene file or .obj model
+    /// Built-in scene, .toml scene file or model (.obj, .ply, .gltf, .glb)
     #[arg(long, value_name = "SCENE", default_value = "parallel-plates")]
     pub(crate) scene: String,
     /// Read files outside the scene's folder too, where the scene names them

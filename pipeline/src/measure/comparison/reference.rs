@@ -183,6 +183,37 @@ impl Reference {
         })
     }
 
+    /// A truth that was found elsewhere: visibility of light number `light`, at every pixel
+    /// of an image, NaN where it says nothing.
+    ///
+    /// # Errors
+    /// The scene has no such light.
+    pub fn given(
+        scene: &Scene,
+        light: usize,
+        image: VisibilityImage,
+    ) -> Result<Self, CompareError> {
+        let count = scene.lights.len();
+        let Some(shape) = scene.lights.get(light).map(|l| &l.shape) else {
+            let given = light;
+            return Err(CompareError::NoSuchLight { given, count });
+        };
+        Ok(Self {
+            kind: ReferenceKind::Exact,
+            light,
+            is_soft: !matches!(
+                shape,
+                LightShape::Point { .. } | LightShape::Directional { .. }
+            ),
+            origin: Origin::Read,
+            warnings: Vec::new(),
+            light_image: None,
+            others: None,
+            sight: Sight::new(scene, &Surfaces::new(scene), image.size),
+            image,
+        })
+    }
+
     /// The truth as a picture with this depth buffer (0..=1, 1 where no surface
     /// is seen, row 0 on top) should show it.
     ///

@@ -270,7 +270,7 @@ fn kind_of(shape: &LightShape) -> &'static str {
 
 fn silhouette_edges(scene: &Scene, light: HardLight) -> Result<Vec<SilhouetteEdge>, SumError> {
     let mut edges = Vec::new();
-    for caster in casters::examine(scene, CasterPolicy::RequireClosed)? {
+    for caster in casters::examine(scene, CasterPolicy::AsObjectsSay)? {
         let mesh = &caster.object.mesh;
         let silhouette = caster.silhouette(light).edges.into_iter();
         edges.extend(silhouette.map(|vertices| SilhouetteEdge {

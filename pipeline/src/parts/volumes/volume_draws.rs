@@ -66,7 +66,7 @@ impl VolumeSettings {
         Ok(Self {
             method: params.get(&METHOD)?,
             overflow: params.get(&OVERFLOW)?,
-            open_casters: params.get(&OPEN_CASTERS)?,
+            open_casters: casters::open_casters(params)?,
             skip: params.get(&SKIP)?,
         })
     }

@@ -56,6 +56,7 @@ pub use fit::{
 };
 pub use placed::{DISTANCE, PlacedEnvironment};
 pub(in crate::world) use read::decode;
+pub use read::decode_exr;
 pub use settings::MapSettings;
 pub use source::MapSource;
 

@@ -30,6 +30,20 @@ struct Read {
     warnings: Vec<SceneWarning>,
 }
 
+/// Size and linear RGB of an OpenEXR picture, rows from the top; sizes that its bytes cannot
+/// hold are refused.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn decode_exr(bytes: &[u8]) -> Result<([u32; 2], Vec<[f32; 3]>), String> {
+    if !bytes.starts_with(exr::MAGIC) {
+        return Err("is no OpenEXR file; those begin with 76 2f 31 01".to_owned());
+    }
+    let read = exr::decode(bytes)?;
+    // At most 2^26 texels.
+    Ok((read.size.map(|s| s as u32), read.texels))
+}
+
 /// A file, or a folder of six, which must lie in `within` if there is such.
 pub(super) fn open(path: &Path, within: Option<&SceneFolder>) -> Result<Picture, EnvironmentError> {
     let name = path.display().to_string();

@@ -26,6 +26,7 @@ pub struct Mesh {
     triangles: Vec<[u32; 3]>,
     normals: Vec<[f32; 3]>,
     normal_triangles: Vec<[u32; 3]>,
+    shading: Shading,
 }
 
 impl Mesh {
@@ -48,7 +49,13 @@ impl Mesh {
             triangles,
             normals,
             normal_triangles,
+            shading,
         })
+    }
+
+    /// How its normals were formed.
+    pub fn shading(&self) -> Shading {
+        self.shading
     }
 
     /// Vertex positions, world space.

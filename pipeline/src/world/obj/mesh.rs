@@ -6,73 +6,41 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::ObjProblem;
-use super::corners::drop_repeated;
-use super::polygon::{Cut, Cutter};
-use super::scan::{Scan, Tally};
-use super::weld::first_equals;
+use super::scan::Scan;
+use crate::world::faces::{Triangles, first_equals};
 use crate::world::shape::Shape;
 
-/// Triangles, and what was amiss with the faces that they are of.
+/// The triangles of a file.
 #[derive(Default)]
-pub(super) struct Triangles {
-    /// Corners as indices of points.
-    corners: Vec<[u32; 3]>,
+pub(super) struct Faces {
+    pub(super) triangles: Triangles,
     /// For each face how many triangles it has, and its material.
     pub(super) painted: Vec<(usize, Option<u32>)>,
-    /// Corners that repeat others of their face.
-    pub(super) repeated: Tally,
-    /// Faces of which too few corners are left.
-    pub(super) degenerate: Tally,
-    /// Faces whose outline crosses itself.
-    pub(super) crossing: Tally,
 }
 
-impl Triangles {
+impl Faces {
     /// Cuts the faces of `scan`, equal points being one.
     pub(super) fn of(scan: &Scan) -> Self {
         let first = first_equals(&scan.points);
         let mut out = Self::default();
-        let mut cutter = Cutter::default();
         let mut rest = &scan.corners[..];
         for face in &scan.faces {
             let (own, after) = rest.split_at(face.corners);
             rest = after;
             let mut corners: Vec<u32> = own.iter().map(|c| first[*c as usize]).collect();
-            let triangles = out.face(&mut cutter, &mut corners, &scan.points, face.line);
+            let place = || format!("line {}", face.line);
+            let triangles = out.triangles.face(&mut corners, &scan.points, place);
             out.painted.push((triangles, face.material));
         }
         out
     }
 
-    /// Adds a face; returns how many triangles it has.
-    fn face(
-        &mut self,
-        cutter: &mut Cutter,
-        corners: &mut Vec<u32>,
-        points: &[DVec3],
-        line: usize,
-    ) -> usize {
-        let place = || format!("line {line}");
-        let dropped = drop_repeated(corners);
-        if corners.len() < 3 {
-            self.degenerate.add(place);
-            return 0;
-        }
-        self.repeated.add_many(dropped, place);
-        let before = self.corners.len();
-        let places: Vec<DVec3> = corners.iter().map(|c| points[*c as usize]).collect();
-        if cutter.cut(corners, &places, &mut self.corners) == Cut::Crossing {
-            self.crossing.add(place);
-        }
-        self.corners.len() - before
-    }
-
     /// The triangles as `tobj` builds them, points in order of first use.
     pub(super) fn shape(&self, points: &[DVec3]) -> Result<Shape, ObjProblem> {
-        if self.corners.is_empty() {
+        if self.triangles.corners.is_empty() {
             return Err(ObjProblem::NoFaces);
         }
-        let text = canonical(points, &self.corners);
+        let text = canonical(points, &self.triangles.corners);
         let options = tobj::LoadOptions {
             single_index: false,
             ..tobj::LoadOptions::default()

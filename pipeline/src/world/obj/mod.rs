@@ -4,10 +4,9 @@
 //! line, it renumbers vertices object by object (so a solid split over several `g`
 //! groups would fall apart), it knows neither CR alone as the end of a line nor
 //! comments behind statements, and its triangulation is a fan whatever the polygon.
-//! So a scan reads the text once on its own (`lines`, `scan`), points of equal
-//! coordinates become one (`weld`), faces are freed of corners that add nothing
-//! (`corners`) and cut into triangles (`polygon`), and tobj gets positions and
-//! triangles of one object (`mesh`).
+//! So a scan reads the text once on its own (`lines`, `scan`), its faces are cut into
+//! triangles (`world/faces`), and tobj gets positions and triangles of one
+//! object (`mesh`).
 //!
 //! Coordinates stay in f64 until the model has its place in a scene: in f32 a model
 //! far from its origin, as geodetic coordinates are, would lose its shape.
@@ -16,16 +15,12 @@
 //! used, as linear RGB; whatever is wrong with them is a warning. Texture
 //! coordinates and the file's own normals are not used.
 
-mod boundary;
-mod corners;
 mod library;
 mod lines;
 mod mesh;
 mod mtl;
 mod paint;
-mod polygon;
 mod scan;
-mod weld;
 
 use std::path::{Path, PathBuf};
 
@@ -34,11 +29,12 @@ use thiserror::Error;
 use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::material::MaterialPart;
 use crate::world::shape::Shape;
+use crate::world::tally::{Tally, beginning};
 use crate::world::warning::SceneWarning;
 pub use lines::NotText;
-use mesh::Triangles;
+use mesh::Faces;
 use paint::{Libraries, Paint};
-use scan::{Scan, Tally};
+use scan::Scan;
 
 /// Bytes of a model that are read at most: some four million triangles.
 pub const MAX_OBJ_BYTES: u64 = 256 << 20;
@@ -176,13 +172,6 @@ fn excerpt(text: &str) -> String {
     beginning(text, 80)
 }
 
-fn beginning(text: &str, most: usize) -> String {
-    match text.char_indices().nth(most) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
-}
-
 /// Reads an OBJ file and its material libraries, which must lie in its folder.
 ///
 /// # Errors
@@ -269,11 +258,12 @@ fn parse_with(
     libraries: Option<&dyn Libraries>,
 ) -> Result<ObjMesh, ObjError> {
     let scan = Scan::of(bytes, file)?;
-    let triangles = Triangles::of(&scan);
-    let shape = triangles.shape(&scan.points);
+    let faces = Faces::of(&scan);
+    let shape = faces.shape(&scan.points);
     let shape = shape.map_err(|problem| ObjError::whole_file(file, problem))?;
-    let paint = libraries.map_or_else(Paint::default, |l| Paint::of(&scan, &triangles, l));
-    let warnings = warnings(&scan, &triangles, &paint);
+    let paint = libraries.map_or_else(Paint::default, |l| Paint::of(&scan, &faces, l));
+    let warnings = faces.triangles.warnings();
+    let warnings = warnings.chain(warnings_of(&scan, &paint)).collect();
     Ok(ObjMesh {
         shape,
         parts: paint.parts,
@@ -281,24 +271,9 @@ fn parse_with(
     })
 }
 
-fn warnings(scan: &Scan, triangles: &Triangles, paint: &Paint) -> Vec<SceneWarning> {
+fn warnings_of(scan: &Scan, paint: &Paint) -> impl Iterator<Item = SceneWarning> {
     let materials = &paint.materials;
-    let all: [(_, &Tally, _); 10] = [
-        (
-            "crossing-polygons",
-            &triangles.crossing,
-            "polygons whose outline crosses itself were cut into fans, which no cut can do right; triangulate the file",
-        ),
-        (
-            "repeated-corners",
-            &triangles.repeated,
-            "corners that repeat others of their face were left out",
-        ),
-        (
-            "degenerate-faces",
-            &triangles.degenerate,
-            "faces whose corners repeat so that they cover nothing were left out",
-        ),
+    let all: [(_, &Tally, _); 7] = [
         (
             "skipped-faces",
             &scan.skipped,
@@ -335,13 +310,8 @@ fn warnings(scan: &Scan, triangles: &Triangles, paint: &Paint) -> Vec<SceneWarni
             "materials are used that no library defines",
         ),
     ];
-    let found = all.into_iter().filter(|(_, tally, _)| tally.count > 0);
-    let warning = |(code, tally, what): (_, &Tally, &str)| SceneWarning {
-        code,
-        count: tally.count,
-        message: format!("{what} (first: {})", beginning(&tally.first, 400)),
-    };
-    found.map(warning).collect()
+    let all = all.map(|(code, tally, what)| tally.warning(code, what));
+    all.into_iter().flatten()
 }
 
 #[cfg(test)]

@@ -11,8 +11,8 @@ use std::str::FromStr;
 
 use super::library::unquoted;
 use super::lines::{keyword_and_rest, logical_lines, name_without_comment, without_comment};
-use super::scan::Tally;
 use crate::world::material::Material;
+use crate::world::tally::Tally;
 
 /// Where a material gives no `Kd`.
 const GREY: [f32; 3] = [0.7; 3];

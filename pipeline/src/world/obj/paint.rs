@@ -1,11 +1,12 @@
 //! The materials of a model: its libraries, and which triangles each one has.
 
 use super::library;
-use super::mesh::Triangles;
+use super::mesh::Faces;
 use super::mtl::Materials;
-use super::scan::{Scan, Tally};
+use super::scan::Scan;
 use crate::world::files::FileError;
 use crate::world::material::MaterialPart;
+use crate::world::tally::Tally;
 
 /// Where material libraries come from.
 pub(super) trait Libraries {
@@ -29,7 +30,7 @@ pub(super) struct Paint {
 }
 
 impl Paint {
-    pub(super) fn of(scan: &Scan, triangles: &Triangles, libraries: &dyn Libraries) -> Self {
+    pub(super) fn of(scan: &Scan, faces: &Faces, libraries: &dyn Libraries) -> Self {
         let mut paint = Self::default();
         for line in &scan.libraries {
             for name in library::names(line, |name| libraries.has(name)) {
@@ -40,7 +41,7 @@ impl Paint {
             }
         }
         let materials = paint.find_all(scan);
-        paint.share_out(&materials, triangles);
+        paint.share_out(&materials, faces);
         paint
     }
 
@@ -58,11 +59,11 @@ impl Paint {
         scan.materials.iter().map(find).collect()
     }
 
-    fn share_out(&mut self, materials: &[Option<usize>], triangles: &Triangles) {
+    fn share_out(&mut self, materials: &[Option<usize>], faces: &Faces) {
         // The part of each material, once it has one.
         let mut part_of = vec![None; self.materials.len()];
         let mut next = 0;
-        for &(count, name) in &triangles.painted {
+        for &(count, name) in &faces.painted {
             let range = next..next + count as u32;
             next = range.end;
             let Some(material) = name.and_then(|n| materials[n as usize]) else {

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::lines::{self, keyword_and_rest, logical_lines, without_comment};
 use super::{ObjError, ObjProblem};
+use crate::world::tally::Tally;
 
 /// Largest coordinate: what f32 holds.
 const LARGEST: f64 = f32::MAX as f64;
@@ -45,26 +46,6 @@ pub(super) struct Face {
     pub(super) material: Option<u32>,
     /// The object that it belongs to, counted from 1.
     object: usize,
-}
-
-/// How often, and first where.
-#[derive(Debug, Default)]
-pub(super) struct Tally {
-    pub(super) count: usize,
-    pub(super) first: String,
-}
-
-impl Tally {
-    pub(super) fn add(&mut self, first: impl FnOnce() -> String) {
-        self.add_many(1, first);
-    }
-
-    pub(super) fn add_many(&mut self, count: usize, first: impl FnOnce() -> String) {
-        if self.count == 0 && count > 0 {
-            self.first = first();
-        }
-        self.count += count;
-    }
 }
 
 impl Scan {

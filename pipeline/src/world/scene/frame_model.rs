@@ -1,15 +1,16 @@
-//! A lone model on a ground plane, lit and framed.
+//! A lone model as a scene: on a ground plane, lit and framed, or with its own camera.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DMat4, DVec3};
 
 use super::{Camera, Material, Object, Scene, SceneWarning};
 use crate::world::adjacency::EdgeAdjacency;
 use crate::world::files::Outside;
-use crate::world::light::Light;
+use crate::world::light::{Light, LightShape};
 use crate::world::mesh::{Mesh, Shading};
-use crate::world::obj::{self, ObjError};
+use crate::world::model::{self, Model, ModelCamera, ModelError, Piece};
 use crate::world::shape::{self, Shape};
 
 /// Largest extent of a framed model, scene units.
@@ -18,55 +19,193 @@ const MODEL_SIZE: f64 = 2.0;
 /// Gap between model and ground, so that a flat base does not fight with it.
 const LIFT: f64 = 0.002;
 
+/// Name of the ground.
+const GROUND_NAME: &str = "ground";
+
 const MODEL: Material = Material::glossy([0.72, 0.66, 0.58], 0.2, 24.0);
+/// How models are shaded.
+const CREASES: Shading = Shading::Crease { degrees: 60.0 };
+
 const GROUND: Material = Material::matt([0.6, 0.62, 0.65]);
 
-/// Reads an OBJ file and frames it with [`frame_model`]; the scene has the
-/// file's name, and its faces the materials that they use, of libraries in its
-/// folder or, if allowed, outside.
+/// Reads a model and makes a scene of it, which has the file's name. A file with a camera
+/// is a scene by itself; any other is framed as by [`frame_model`], with its own lights if
+/// it has any. Faces have the materials that they use; what the file names in turn must lie
+/// in its folder or, if allowed, outside.
 ///
 /// # Errors
 /// The file cannot be read or holds no valid mesh.
-pub fn load_and_frame(path: &Path, outside: Outside) -> Result<Scene, ObjError> {
-    let read = obj::load_given(path, outside)?;
+pub fn load_and_frame(path: &Path, outside: Outside) -> Result<Scene, ModelError> {
+    let read = model::load_given(path, outside)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let mut scene = frame_model(&stem, read.shape);
-    for object in scene.objects.iter_mut().filter(|o| o.casts) {
-        object.parts.clone_from(&read.parts);
-    }
-    scene.warnings.extend(read.warnings);
-    Ok(scene)
+    Ok(match &read.camera {
+        Some(camera) => as_written(&stem, camera.into(), &read),
+        None => framed(&stem, &read),
+    })
 }
 
 /// Scales `model` to a largest extent of 2, stands it on a ground plane at
 /// y = 0, and sets a light and a camera round it. A mesh that is not closed
-/// stays a caster, with an `open-mesh` warning: a technique may refuse it.
+/// stays a caster by its generalised silhouette, with an `open-mesh` warning.
 ///
 /// # Panics
 /// A coordinate is not finite or beyond f32.
 pub fn frame_model(name: &str, model: Shape) -> Scene {
-    let (low, high) = model.bounds().unwrap_or_default();
-    let extent = high - low;
-    let scale = scale_of(extent);
-    let height = extent.y * scale;
-    let model = placed(model, (low + high) / 2.0, low.y, scale);
-    let warnings = open_warning(&model).into_iter().collect();
-    let ground = shape::plane(12.0, 0.0).into_mesh(Shading::Flat);
-    let ground = ground.expect("the ground is finite");
-    let mut scene = Scene::new(
-        camera(height),
-        vec![Light::horizontal_square(
-            DVec3::new(2.4, height + 3.2, 2.2),
-            0.8,
-        )],
-        vec![
-            Object::new("ground", ground, GROUND).receiver_only(),
-            Object::new(name, model, MODEL),
-        ],
+    let piece = Piece {
+        name: name.to_owned(),
+        shape: model,
+        parts: Vec::new(),
+    };
+    framed(name, &Model::of(piece, Vec::new()))
+}
+
+/// The model on a ground plane.
+fn framed(name: &str, model: &Model) -> Scene {
+    let frame = Frame::of(model);
+    let height = frame.height;
+    let camera = camera(height);
+    let ground = ground_across(camera.target - camera.eye);
+    let mut objects = vec![Object::new(GROUND_NAME, ground, GROUND).receiver_only()];
+    let creased = |shape: Shape| {
+        let creased = shape.into_mesh(CREASES);
+        creased.expect("the model fits a box of size 2")
+    };
+    let pieces = model.pieces.iter();
+    objects.extend(pieces.map(|p| object(p, creased(frame.placed(p.shape.clone())))));
+    let above = DVec3::new(2.4, height + 3.2, 2.2);
+    let mut lights: Vec<Light> = model.lights.iter().map(|l| frame.light(l)).collect();
+    if lights.is_empty() {
+        lights.push(Light::horizontal_square(above, 0.8));
+    }
+    finished(name, Scene::new(camera, lights, objects), model)
+}
+
+/// The ground of a framed model, turned so that its far end is level in a picture along
+/// `sight`.
+fn ground_across(sight: DVec3) -> Mesh {
+    let away = DVec3::new(sight.x, 0.0, sight.z);
+    // Straight down any turn will do.
+    let [sin, cos] = match away.length() {
+        length if length > 0.0 => [away.x / length, away.z / length],
+        _ => [0.0, 1.0],
+    };
+    let turn = DMat3::from_cols(
+        DVec3::new(cos, 0.0, -sin),
+        DVec3::Y,
+        DVec3::new(sin, 0.0, cos),
     );
+    let ground = shape::plane(12.0, 0.0).transformed(DMat4::from_mat3(turn));
+    ground
+        .into_mesh(Shading::Flat)
+        .expect("the ground is finite")
+}
+
+/// Turns the ground of a framed model to the scene's camera.
+pub(super) fn turn_ground(scene: &mut Scene) {
+    let sight = scene.camera.target - scene.camera.eye;
+    let mut grounds = scene.objects.iter_mut();
+    if let Some(ground) = grounds.find(|o| o.name == GROUND_NAME && !o.casts) {
+        ground.mesh = Arc::new(ground_across(sight));
+    }
+}
+
+/// The file's own scene, in its own units.
+fn as_written(name: &str, camera: Camera, model: &Model) -> Scene {
+    let creased = |shape: Shape| shape.into_mesh(CREASES).expect("the reader bounds it");
+    let pieces = model.pieces.iter();
+    let objects = pieces
+        .map(|p| object(p, creased(p.shape.clone())))
+        .collect();
+    let mut lights = model.lights.clone();
+    if lights.is_empty() {
+        lights.push(light_above(model));
+    }
+    finished(name, Scene::new(camera, lights, objects), model)
+}
+
+/// The light that a framed model has, for one in other units.
+fn light_above(model: &Model) -> Light {
+    let (low, high) = model.bounds().unwrap_or_default();
+    let extent = (high - low).max_element().max(f64::MIN_POSITIVE) / MODEL_SIZE;
+    let top = DVec3::new((low.x + high.x) / 2.0, high.y, (low.z + high.z) / 2.0);
+    Light::horizontal_square(top + DVec3::new(2.4, 3.2, 2.2) * extent, 0.8 * extent)
+}
+
+fn object(piece: &Piece, mesh: Mesh) -> Object {
+    let mut object = Object::new(piece.name.clone(), mesh, MODEL);
+    object.open = true;
+    object.parts.clone_from(&piece.parts);
+    object
+}
+
+/// The scene with its name, and what is to be said of it.
+fn finished(name: &str, mut scene: Scene, model: &Model) -> Scene {
     name.clone_into(&mut scene.name);
-    scene.warnings = warnings;
+    scene.warnings.extend(open_warning(scene.casters()));
+    scene.warnings.extend(model.warnings.iter().cloned());
     scene
+}
+
+/// Where a framed model is.
+#[derive(Clone, Copy)]
+struct Frame {
+    /// Of the model: what comes to lie under the origin, on the ground.
+    foot: DVec3,
+    scale: f64,
+    /// Scaled.
+    height: f64,
+}
+
+impl Frame {
+    fn of(model: &Model) -> Self {
+        let (low, high) = model.bounds().unwrap_or_default();
+        let extent = high - low;
+        let scale = scale_of(extent);
+        let centre = (low + high) / 2.0;
+        Self {
+            foot: DVec3::new(centre.x, low.y, centre.z),
+            scale,
+            height: extent.y * scale,
+        }
+    }
+
+    /// A point of the model. The offset goes first: what is far from its origin has digits
+    /// only for what is left then.
+    fn point(&self, p: DVec3) -> DVec3 {
+        (p - self.foot) * self.scale + DVec3::Y * LIFT
+    }
+
+    /// In f64, to be rounded once.
+    fn placed(&self, mut shape: Shape) -> Shape {
+        for p in &mut shape.positions {
+            *p = self.point(*p);
+        }
+        shape
+    }
+
+    /// A light of the model.
+    fn light(&self, light: &Light) -> Light {
+        let mut light = light.clone();
+        match &mut light.shape {
+            LightShape::Point { position } => *position = self.point(*position),
+            LightShape::Rectangle {
+                centre,
+                edge_u,
+                edge_v,
+            } => {
+                *centre = self.point(*centre);
+                *edge_u *= self.scale;
+                *edge_v *= self.scale;
+            }
+            LightShape::Disc { centre, radius, .. } | LightShape::Sphere { centre, radius } => {
+                *centre = self.point(*centre);
+                *radius *= self.scale;
+            }
+            // Of no model file.
+            LightShape::Polygon(_) | LightShape::Directional { .. } => {}
+        }
+        light
+    }
 }
 
 /// The factor that makes the largest extent that of a framed model; 1 for models
@@ -74,18 +213,6 @@ pub fn frame_model(name: &str, model: Shape) -> Scene {
 fn scale_of(extent: DVec3) -> f64 {
     let scale = MODEL_SIZE / extent.max_element();
     if scale.is_finite() { scale } else { 1.0 }
-}
-
-/// The model with `centre` over the origin and `base` just above the ground, in
-/// f64 and rounded once. The offset goes first: what is far from its origin has
-/// digits only for what is left then.
-fn placed(mut model: Shape, centre: DVec3, base: f64, scale: f64) -> Mesh {
-    let foot = DVec3::new(centre.x, base, centre.z);
-    for p in &mut model.positions {
-        *p = (*p - foot) * scale + DVec3::Y * LIFT;
-    }
-    let creased = model.into_mesh(Shading::Crease { degrees: 60.0 });
-    creased.expect("the model fits a box of size 2")
 }
 
 /// Looks down at the model's middle, far enough to see it and its shadow.
@@ -97,22 +224,43 @@ fn camera(height: f64) -> Camera {
     }
 }
 
-fn open_warning(mesh: &Mesh) -> Option<SceneWarning> {
-    let report = EdgeAdjacency::new(mesh.triangles()).closedness(mesh);
-    let offenders =
-        report.boundary + report.over_shared + report.flipped + report.degenerate_triangles;
-    (!report.is_closed()).then(|| SceneWarning {
-        code: "open-mesh",
-        count: offenders,
-        message: format!("the model is not closed: {report}"),
-    })
+impl From<&ModelCamera> for Camera {
+    fn from(of: &ModelCamera) -> Self {
+        Self {
+            eye: of.eye,
+            target: of.target,
+            up: of.up,
+            fov_y_degrees: of.fov_y_degrees,
+            near: of.near,
+        }
+    }
+}
+
+fn open_warning<'a>(casters: impl Iterator<Item = &'a Object>) -> Option<SceneWarning> {
+    let mut found: Option<SceneWarning> = None;
+    for object in casters {
+        let report = EdgeAdjacency::new(object.mesh.triangles()).closedness(&object.mesh);
+        if report.is_closed() {
+            continue;
+        }
+        let offenders =
+            report.boundary + report.over_shared + report.flipped + report.degenerate_triangles;
+        let first = found.get_or_insert_with(|| SceneWarning {
+            code: "open-mesh",
+            count: 0,
+            message: format!(
+                "the model is not closed: {report}; where shadows are made of volumes, they are of its \
+                 generalised silhouette (refuse it with --set open-casters=refuse)"
+            ),
+        });
+        first.count += offenders;
+    }
+    found
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    use glam::DMat4;
 
     fn framed(shape: Shape) -> Scene {
         frame_model("thing", shape)
@@ -160,9 +308,33 @@ mod tests {
     }
 
     #[test]
+    fn the_far_end_of_the_ground_is_level() {
+        for (x, z) in [(1.1, 4.3), (-3.0, 0.5), (0.0, -2.0)] {
+            let mut scene = framed(shape::cylinder(16, 0.5, 0.0, 1.0));
+            scene.camera.eye = DVec3::new(x, 2.0, z);
+            scene.camera.target = DVec3::Y * 0.25;
+            turn_ground(&mut scene);
+            let [right, ..] = scene.camera.basis();
+            let sight = DVec3::new(-x, 0.0, -z);
+            let far = scene.objects[0]
+                .mesh
+                .positions()
+                .iter()
+                .map(|p| DVec3::from(p.map(f64::from)));
+            let far: Vec<DVec3> = far.filter(|p| p.dot(sight) > 0.0).collect();
+            assert_eq!(far.len(), 2);
+            let along = (far[1] - far[0]).normalize();
+            assert!(
+                (along.dot(right).abs() - 1.0).abs() < 1e-6,
+                "{along} {right}"
+            );
+        }
+    }
+
+    #[test]
     fn an_open_model_is_kept_and_flagged() {
         let scene = framed(shape::plane(3.0, 0.0));
-        assert!(scene.objects[1].casts);
+        assert!(scene.objects[1].casts && scene.objects[1].open);
         assert_eq!(
             (scene.warnings[0].code, scene.warnings[0].count),
             ("open-mesh", 4)

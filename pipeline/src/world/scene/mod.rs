@@ -11,6 +11,7 @@ mod placed;
 mod pyramid;
 mod rest;
 mod source;
+mod view;
 mod view_warnings;
 
 use std::sync::Arc;
@@ -24,6 +25,7 @@ pub use placed::PlacedError;
 pub(crate) use pyramid::{Pyramid, clip, clip_with};
 pub use rest::Rest;
 pub use source::SceneSource;
+pub use view::{View, ViewError};
 
 pub use crate::world::material::{Material, MaterialPart};
 pub use crate::world::warning::SceneWarning;
@@ -138,6 +140,8 @@ pub struct Object {
     pub parts: Vec<MaterialPart>,
     /// Where the object was before it moved as a whole, if that is known.
     pub rest: Option<Rest>,
+    /// Whether it may cast though its mesh is not closed, by its generalised silhouette.
+    pub open: bool,
 }
 
 impl Object {
@@ -151,6 +155,7 @@ impl Object {
             material,
             parts: Vec::new(),
             rest: None,
+            open: false,
         }
     }
 

@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use super::builtin::{self, BuiltinScene};
 use super::file::{self, Moment};
-use super::{Scene, SceneError, load_and_frame};
+use super::{Scene, SceneError, View, load_and_frame};
 use crate::world::files::Outside;
+use crate::world::model;
 use crate::world::scene::environment::{EnvironmentRequest, FittedMaps};
 
 /// Where scenes come from.
@@ -18,6 +19,7 @@ pub struct SceneSource {
     kind: Kind,
     environment: Option<EnvironmentRequest>,
     maps: FittedMaps,
+    view: View,
 }
 
 #[derive(Clone, Debug)]
@@ -32,8 +34,8 @@ enum Kind {
 }
 
 impl SceneSource {
-    /// The source called `name`: a `.toml` scene file, an `.obj` model to be
-    /// framed, or else a built-in name. What the file names must lie in its folder.
+    /// The source called `name`: a `.toml` scene file, a model (`.obj`, `.ply`,
+    /// `.gltf`, `.glb`) to be framed, or else a built-in name. What the file names must lie in its folder.
     ///
     /// # Errors
     /// The file cannot be read, or there is no built-in scene of that name.
@@ -54,13 +56,14 @@ impl SceneSource {
                 text: file::read(path)?,
                 outside,
             },
-            Some("obj") => Kind::Model(Box::new(load_and_frame(path, outside)?)),
+            _ if model::is_model(path) => Kind::Model(Box::new(load_and_frame(path, outside)?)),
             _ => Kind::Builtin(builtin::find(name)?),
         };
         Ok(Self {
             kind,
             environment: None,
             maps: FittedMaps::default(),
+            view: View::default(),
         })
     }
 
@@ -68,6 +71,13 @@ impl SceneSource {
     #[must_use]
     pub fn with_environment(mut self, environment: Option<EnvironmentRequest>) -> Self {
         self.environment = environment;
+        self
+    }
+
+    /// Looks at every scene from elsewhere, or under other lights.
+    #[must_use]
+    pub fn with_view(mut self, view: View) -> Self {
+        self.view = view;
         self
     }
 
@@ -88,7 +98,9 @@ impl SceneSource {
                     environment: self.environment.as_ref(),
                     maps: &mut self.maps,
                 };
-                return Ok(file::named(path, text, &mut moment)?);
+                let mut scene = file::named(path, text, &mut moment)?;
+                self.view.apply(&mut scene, false)?;
+                return Ok(scene);
             }
             Kind::Builtin(entry) => entry.at(time),
             Kind::Model(scene) => (**scene).clone(),
@@ -96,6 +108,8 @@ impl SceneSource {
         if let Some(environment) = &self.environment {
             environment.light(&mut scene, &mut self.maps)?;
         }
+        let framed = matches!(self.kind, Kind::Model(_));
+        self.view.apply(&mut scene, framed)?;
         Ok(scene)
     }
 }

@@ -18,7 +18,7 @@ use gnomon_shaders::penumbra::intensity::Interpolation;
 use crate::geometry::caster::CasterPolicy;
 use crate::geometry::wedge::WedgeMesh;
 use crate::geometry::wedge::paper1::{LinkedSettings, LinkedWedge};
-use crate::parts::casters::{OPEN_CASTERS, examine};
+use crate::parts::casters::{OPEN_CASTERS, examine, open_casters};
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::horizon::HORIZON;
 use crate::parts::passes::{SceneDraws, Targets};
@@ -76,7 +76,7 @@ impl PenumbraSettings {
             extra_wedges: params.get(&EXTRA_WEDGES)?,
             light_as: params.get(&LIGHT_AS)?,
             horizon: params.get(&HORIZON)?,
-            open_casters: params.get(&OPEN_CASTERS)?,
+            open_casters: open_casters(params)?,
             frame: FrameSettings::read(params)?,
         })
     }

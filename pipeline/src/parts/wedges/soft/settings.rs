@@ -6,7 +6,7 @@ use super::light::{SoftLight, split};
 use crate::choices;
 use crate::geometry::caster::CasterPolicy;
 use crate::geometry::wedge::{Construction, Wedge, WedgeMesh, WedgeStatistics};
-use crate::parts::casters::{OPEN_CASTERS, SKIP};
+use crate::parts::casters::{OPEN_CASTERS, SKIP, open_casters};
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::horizon::HORIZON;
 use crate::parts::passes::View;
@@ -72,7 +72,7 @@ impl SoftSettings {
             construction: params.get(&WEDGE)?,
             sphere: params.get(&SPHERE)?,
             horizon: params.get(&HORIZON)?,
-            open_casters: params.get(&OPEN_CASTERS)?,
+            open_casters: open_casters(params)?,
             skip: params.get(&SKIP)?,
             frame: FrameSettings::read(params)?,
         })

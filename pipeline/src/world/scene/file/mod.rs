@@ -16,14 +16,15 @@
 //! [[lights]]                      # point, square, rectangle, polygon, disc, sphere,
 //!                                 # directional
 //! shape.square = { centre = [1.5, 4.0, 1.0], side = 1.0 }
-//! colour = [1.0, 1.0, 1.0]        # optional
+//! colour = [1.0, 1.0, 1.0]        # optional; color as well
 //!
 //! [[objects]]
 //! mesh.plane = { half = 5.0 }     # sheets cast nothing unless told to
 //!
 //! [[objects]]
 //! name = "bunny"
-//! mesh.obj = "bunny.obj"          # relative to this file
+//! mesh.obj = "bunny.obj"          # relative to this file; mesh.model = "a.glb" for PLY and
+//!                                 # glTF as well
 //! scale = 10.0                    # a number or three; applied first,
 //! rotate = [0.0, 30.0, 0.0]       # then degrees about x, then y, then z,
 //! translate = [0.0, -0.3, 0.0]    # then this
@@ -211,6 +212,9 @@ pub fn parse_at(
     let folder = SceneFolder::new(folder, moment.outside);
     build::scene(&source, &folder, table, moment)
 }
+
+#[cfg(test)]
+mod documented;
 
 #[cfg(test)]
 mod tests {

@@ -43,6 +43,7 @@ pub(super) struct CameraTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct LightTable {
     pub(super) shape: LightShapeTable,
+    #[serde(alias = "color")]
     pub(super) colour: Option<Triple>,
 }
 
@@ -53,11 +54,13 @@ pub(super) enum LightShapeTable {
         position: Triple,
     },
     Square {
+        #[serde(alias = "center")]
         centre: Triple,
         side: Number,
     },
     #[serde(rename_all = "kebab-case")]
     Rectangle {
+        #[serde(alias = "center")]
         centre: Triple,
         edge_u: Triple,
         edge_v: Triple,
@@ -66,11 +69,13 @@ pub(super) enum LightShapeTable {
         vertices: Spanned<Vec<Array<f64, 3>>>,
     },
     Disc {
+        #[serde(alias = "center")]
         centre: Triple,
         normal: Triple,
         radius: Number,
     },
     Sphere {
+        #[serde(alias = "center")]
         centre: Triple,
         radius: Number,
     },
@@ -169,6 +174,7 @@ pub(super) struct MaterialTable {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) enum MeshTable {
     Obj(Spanned<String>),
+    Model(Spanned<String>),
     Plane {
         half: Number,
     },
@@ -214,6 +220,7 @@ impl MeshTable {
     pub(super) fn kind(&self) -> &'static str {
         match self {
             Self::Obj(_) => "obj",
+            Self::Model(_) => "model",
             Self::Plane { .. } => "plane",
             Self::Box { .. } => "box",
             Self::Cylinder { .. } => "cylinder",

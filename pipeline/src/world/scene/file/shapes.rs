@@ -1,9 +1,10 @@
-//! Meshes of a scene file: built-in primitives and OBJ files.
+//! Meshes of a scene file: built-in primitives and models.
 
 use super::SceneFileError;
 use super::check::Source;
 use super::schema::MeshTable;
 use crate::world::files::SceneFolder;
+use crate::world::model::{self, Model};
 use crate::world::obj;
 use crate::world::scene::{MaterialPart, SceneWarning};
 use crate::world::shape::{self, Shape, Terrain};
@@ -36,6 +37,11 @@ pub(super) fn shape(
                 warnings: read.warnings,
             })
         }
+        MeshTable::Model(path) => {
+            let read = model::load_from(&folder.join(path.get_ref()), folder)
+                .map_err(|e| source.error(path.span(), e.to_string()))?;
+            Ok(of_model(read, path.get_ref()))
+        }
         primitive => Ok(Read {
             shape: self::primitive(source, primitive, time)?,
             ..Read::default()
@@ -43,9 +49,30 @@ pub(super) fn shape(
     }
 }
 
+/// All solids of a model; a scene file has a camera and lights of its own.
+fn of_model(mut read: Model, name: &str) -> Read {
+    let ignored = read.lights.len() + usize::from(read.camera.is_some());
+    if ignored > 0 {
+        read.warnings.push(SceneWarning {
+            code: "ignored-lights",
+            count: ignored,
+            message: format!(
+                "lights and cameras of models are ignored in scene files (first: '{name}')"
+            ),
+        });
+    }
+    let warnings = std::mem::take(&mut read.warnings);
+    let (shape, parts) = read.merged();
+    Read {
+        shape,
+        parts,
+        warnings,
+    }
+}
+
 fn primitive(source: &Source<'_>, table: &MeshTable, time: f64) -> Result<Shape, SceneFileError> {
     Ok(match table {
-        MeshTable::Obj(_) => Shape::default(),
+        MeshTable::Obj(_) | MeshTable::Model(_) => Shape::default(),
         MeshTable::Plane { half } => shape::plane(source.positive("half", half)?, 0.0),
         MeshTable::Box { size } => {
             let extent = source.finite("size", size)?;

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 /// For each point the index of the first one that equals it.
-pub(super) fn first_equals(points: &[DVec3]) -> Vec<u32> {
+pub(crate) fn first_equals(points: &[DVec3]) -> Vec<u32> {
     // Adding 0 turns -0 into 0, so that equal numbers have equal bits.
     let bits = |i: u32| {
         (points[i as usize] + DVec3::ZERO)

@@ -1,0 +1,57 @@
+//! OBJ models with a library of materials. Numbers are the shortest that have the same bits
+//! when they are read.
+
+use std::fmt::Write as _;
+
+use super::Exporting;
+use crate::world::material::Material;
+
+/// Writing to a String cannot fail.
+macro_rules! line {
+    ($text:expr, $($rest:tt)*) => {
+        let _ = writeln!($text, $($rest)*);
+    };
+}
+
+/// The name of part `k` of an object.
+fn name(object: &Exporting<'_>, k: usize) -> String {
+    format!("m{}-{k}", object.number)
+}
+
+/// The library of all materials.
+pub(super) fn materials(objects: &[Exporting<'_>]) -> String {
+    let mut text = String::new();
+    for object in objects {
+        for (k, part) in object.object.painted().iter().enumerate() {
+            line!(text, "newmtl {}", name(object, k));
+            write_material(&mut text, &part.material);
+        }
+    }
+    text
+}
+
+fn write_material(text: &mut String, m: &Material) {
+    let [r, g, b] = m.albedo;
+    line!(text, "Kd {r} {g} {b}");
+    let [r, g, b] = m.specular;
+    line!(text, "Ks {r} {g} {b}");
+    line!(text, "Ns {}\nillum 2", m.shininess);
+}
+
+/// An object, whose materials are in `library`.
+pub(super) fn model(object: &Exporting<'_>, library: &str) -> String {
+    let mesh = &object.object.mesh;
+    let mut text = format!("mtllib {library}\n");
+    line!(text, "o {}", super::tables::word(&object.object.name));
+    for [x, y, z] in mesh.positions() {
+        line!(text, "v {x} {y} {z}");
+    }
+    for (k, part) in object.object.painted().iter().enumerate() {
+        line!(text, "usemtl {}", name(object, k));
+        for &triangle in &part.triangles {
+            let [a, b, c] = mesh.triangles()[triangle as usize].map(|i| i + 1);
+            line!(text, "f {a} {b} {c}");
+        }
+    }
+    text
+}

@@ -1,0 +1,149 @@
+//! What is written is read back as the same scene.
+
+use super::*;
+use crate::world::files::Outside;
+use crate::world::scene::{SceneSource, builtin, file, load_and_frame};
+use crate::world::scratch::Scratch;
+
+/// The scene in all formats in a folder of its own.
+fn written(scene: &Scene, test: &str) -> (Scratch, Exported) {
+    let folder = Scratch::made(&format!("export-{test}"));
+    let formats = [ExportFormat::Gltf, ExportFormat::Obj];
+    let exported = export(scene, [64, 48], "it", &formats);
+    for (name, bytes) in &exported.files {
+        std::fs::write(folder.join(name), bytes).unwrap();
+    }
+    (folder, exported)
+}
+
+/// Triangles as the places of their corners, which no numbering changes.
+fn triangles(object: &Object) -> Vec<[[u32; 3]; 3]> {
+    let bits = |i: u32| object.mesh.positions()[i as usize].map(|c| (c + 0.0).to_bits());
+    let triangles = object.mesh.triangles().iter();
+    let mut all: Vec<_> = triangles.map(|t| t.map(bits)).collect();
+    all.iter_mut().for_each(|t| {
+        let least = (0..3).min_by_key(|k| t[*k]).unwrap();
+        t.rotate_left(least);
+    });
+    all.sort_unstable();
+    all
+}
+
+/// Those that have three corners.
+fn proper(object: &Object) -> Vec<[[u32; 3]; 3]> {
+    let mut all = triangles(object);
+    all.retain(|[a, b, c]| a != b && b != c && c != a);
+    all
+}
+
+#[test]
+fn scene_files_hold_everything_to_the_bit() {
+    for entry in builtin::SCENES {
+        let scene = entry.build();
+        let (folder, _) = written(&scene, &format!("toml-{}", entry.name));
+        let read = file::load(&folder.join("it.toml")).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(read.camera, scene.camera, "{}", entry.name);
+        assert_eq!(read.lights, scene.lights, "{}", entry.name);
+        let own = (scene.ambient, scene.background, Some([64, 48]));
+        assert_eq!((read.ambient, read.background, read.size), own);
+        let drawn = scene
+            .objects
+            .iter()
+            .filter(|o| !o.mesh.triangles().is_empty());
+        for (own, read) in drawn.zip(&read.objects) {
+            assert_eq!(proper(own), proper(read), "{} {}", entry.name, own.name);
+            assert_eq!((own.casts, own.receives), (read.casts, read.receives));
+            let paint = |o: &Object| {
+                o.painted()
+                    .into_iter()
+                    .map(|p| p.material)
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(paint(own), paint(read));
+        }
+    }
+}
+
+#[test]
+fn gltf_holds_geometry_to_the_bit_and_camera_and_lights_nearly() {
+    for entry in builtin::SCENES {
+        let scene = entry.build();
+        let (folder, exported) = written(&scene, &format!("glb-{}", entry.name));
+        let read = load_and_frame(&folder.join("it.glb"), Outside::Refused).unwrap();
+        let drawn = scene
+            .objects
+            .iter()
+            .filter(|o| !o.mesh.triangles().is_empty());
+        for (own, read) in drawn.zip(&read.objects) {
+            assert_eq!(proper(own), proper(read), "{} {}", entry.name, own.name);
+            let albedo = |o: &Object| {
+                o.painted()
+                    .into_iter()
+                    .map(|p| p.material.albedo)
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(albedo(own), albedo(read));
+        }
+        let [own, other] = [&scene.camera, &read.camera];
+        let sight = |c: &crate::world::scene::Camera| (c.target - c.eye).normalize();
+        assert!((own.eye - other.eye).length() <= 1e-9 * (1.0 + own.eye.length()));
+        assert!((sight(own) - sight(other)).length() < 1e-9);
+        assert!((own.fov_y_degrees - other.fov_y_degrees).abs() < 1e-12);
+        assert!((own.near - other.near).abs() <= 1e-12 * own.near);
+        let as_points = exported
+            .warnings
+            .iter()
+            .any(|w| w.code == "lights-as-points");
+        let brightest = scene
+            .lights
+            .iter()
+            .flat_map(|l| l.colour)
+            .fold(0.0, f32::max);
+        // All lights but their common factor; no order is changed.
+        for (own, other) in scene.lights.iter().zip(&read.lights) {
+            for (a, b) in own.colour.iter().zip(other.colour) {
+                assert!((a / brightest - b).abs() < 1e-5, "{} {a} {b}", entry.name);
+            }
+            if !as_points {
+                same_shape(&own.shape, &other.shape);
+            }
+        }
+        assert_eq!(read.lights.len(), scene.lights.len());
+    }
+}
+
+fn same_shape(a: &LightShape, b: &LightShape) {
+    use crate::world::light::HardLight::{Directional, Point};
+    let light = |shape: &LightShape| crate::world::light::Light {
+        shape: shape.clone(),
+        colour: [1.0; 3],
+    };
+    match (light(a).hard(), light(b).hard()) {
+        (Point(a), Point(b)) => assert!((a - b).length() < 1e-9, "{a} {b}"),
+        (Directional(a), Directional(b)) => {
+            assert!((a.normalize() - b.normalize()).length() < 1e-9, "{a} {b}");
+        }
+        other => panic!("{other:?}"),
+    }
+    if let (
+        LightShape::Rectangle {
+            edge_u: u,
+            edge_v: v,
+            ..
+        },
+        LightShape::Rectangle { edge_u, edge_v, .. },
+    ) = (a, b)
+    {
+        let same = |a: glam::DVec3, b: glam::DVec3| (a - b).length().min((a + b).length());
+        assert!(same(*u, *edge_u) < 1e-9 && same(*v, *edge_v) < 1e-9);
+    }
+}
+
+#[test]
+fn names_cannot_break_lines_or_tables() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    scene.objects[1].name = "a\n[[lights]]\n\"'#".to_owned();
+    let (folder, _) = written(&scene, "names");
+    let mut source = SceneSource::open(folder.join("it.toml").to_str().unwrap()).unwrap();
+    assert_eq!(source.at(0.0).unwrap().objects[1].name, "a [[lights]] \"'#");
+}

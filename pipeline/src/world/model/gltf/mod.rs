@@ -1,0 +1,244 @@
+//! Models and scenes from glTF 2.0 files: `.gltf` and `.glb`.
+//!
+//! The nodes of the file's scene are drawn with their transforms, in metres and y up as
+//! they are written: triangles in lists, strips and fans, base colour factors, the first
+//! camera in perspective, lights of `KHR_lights_punctual` and `EXT_lights_area`, positions
+//! of `KHR_mesh_quantization`. A face has no back: all are drawn from both sides, whether or
+//! not `doubleSided` is set, and normals are this crate's own. What else a file has is told
+//! once in warnings; what it requires and is not supported is an error.
+//!
+//! JSON goes through serde into the few structs of `schema`. Whatever a file says is
+//! checked against what it has before it is believed: lengths, offsets, counts, indices.
+
+mod accessor;
+mod buffers;
+mod camera;
+mod container;
+mod error;
+mod light;
+mod mesh;
+mod nodes;
+mod notes;
+mod schema;
+mod uri;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::DMat4;
+
+pub use error::{GltfError, GltfProblem};
+
+use super::piece::{Model, Piece};
+use crate::world::files::{self, FileError, Outside, SceneFolder};
+use crate::world::material::{Material, MaterialPart};
+use buffers::{Beside, Buffers};
+use error::{Checked, element};
+use mesh::{Local, MOST, Reader};
+use nodes::Placed;
+use notes::Notes;
+use schema::Root;
+
+/// Bytes of a file that are read at most, without buffers that are files of their own.
+pub const MAX_GLTF_BYTES: u64 = 256 << 20;
+
+/// Extensions that a file may require.
+pub const SUPPORTED: [&str; 4] = [
+    "KHR_lights_punctual",
+    "EXT_lights_area",
+    "KHR_mesh_quantization",
+    // Textures are not drawn.
+    "KHR_texture_transform",
+];
+
+/// Largest coordinate: what f32 holds.
+const LARGEST: f64 = f32::MAX as f64;
+
+/// Reads a file that the user names; its buffers must lie in its folder, unless more is
+/// allowed.
+///
+/// # Errors
+/// See [`GltfProblem`].
+pub fn load_given(path: &Path, outside: Outside) -> Result<Model, GltfError> {
+    let folder = SceneFolder::of(path, outside);
+    of_bytes(files::read(path, MAX_GLTF_BYTES), path, &folder)
+}
+
+/// Reads a file that a scene in `folder` names.
+///
+/// # Errors
+/// See [`GltfProblem`].
+pub fn load_from(path: &Path, folder: &SceneFolder) -> Result<Model, GltfError> {
+    of_bytes(folder.read(path, MAX_GLTF_BYTES), path, folder)
+}
+
+fn of_bytes(
+    bytes: Result<Vec<u8>, FileError>,
+    path: &Path,
+    folder: &SceneFolder,
+) -> Result<Model, GltfError> {
+    let file = path.display().to_string();
+    let bytes = bytes.map_err(|e| GltfError {
+        file: file.clone(),
+        place: String::new(),
+        problem: e.into(),
+    })?;
+    parse_with(&bytes, &file, Some(Beside { path, folder }))
+}
+
+/// Reads a file's bytes; buffers that are files of their own are an error. `file` names it
+/// in messages. Any bytes are accepted or refused with an error, never a panic.
+///
+/// # Errors
+/// See [`GltfProblem`].
+pub fn parse(bytes: &[u8], file: &str) -> Result<Model, GltfError> {
+    parse_with(bytes, file, None)
+}
+
+fn parse_with(bytes: &[u8], file: &str, beside: Option<Beside<'_>>) -> Result<Model, GltfError> {
+    model(bytes, beside).map_err(|e| GltfError {
+        file: file.to_owned(),
+        place: e.place,
+        problem: e.problem,
+    })
+}
+
+fn model(bytes: &[u8], beside: Option<Beside<'_>>) -> Checked<Model> {
+    let (json, own) = container::parts(bytes).map_err(|p| p.at(""))?;
+    let root: Root = serde_json::from_slice(json).map_err(|e| GltfProblem::from(e).at(""))?;
+    check_asset(&root)?;
+    let mut build = Build {
+        root: &root,
+        buffers: Buffers::new(&root, own, beside),
+        reader: Reader::default(),
+        meshes: BTreeMap::new(),
+        notes: Notes::default(),
+        triangles: 0,
+    };
+    build.model()
+}
+
+/// Version and required extensions.
+fn check_asset(root: &Root) -> Checked<()> {
+    let version = root
+        .asset
+        .min_version
+        .as_ref()
+        .unwrap_or(&root.asset.version);
+    let least = root.asset.min_version.is_some();
+    if !(version == "2.0" || (!least && version.starts_with("2."))) {
+        let version = version.clone();
+        return Err(GltfProblem::Version { version }.at("asset"));
+    }
+    let unknown = |name: &&String| !SUPPORTED.contains(&name.as_str());
+    match root.extensions_required.iter().find(unknown) {
+        None => Ok(()),
+        Some(name) => {
+            let name = name.clone();
+            Err(GltfProblem::Extension { name }.at("extensionsRequired"))
+        }
+    }
+}
+
+/// A file on its way to a model.
+struct Build<'a> {
+    root: &'a Root,
+    buffers: Buffers<'a>,
+    reader: Reader,
+    /// Those that were read.
+    meshes: BTreeMap<usize, Local>,
+    notes: Notes,
+    /// Triangles of all nodes so far.
+    triangles: u64,
+}
+
+impl Build<'_> {
+    fn model(&mut self) -> Checked<Model> {
+        let (mut pieces, mut sources, mut camera) = (Vec::new(), Vec::new(), None);
+        for placed in nodes::placed(self.root)? {
+            pieces.extend(self.piece(&placed)?);
+            sources.extend(light::at(self.root, &placed, &mut self.notes)?);
+            camera = camera::at(self.root, &placed, camera, &mut self.notes)?;
+        }
+        let mut model = Model {
+            pieces,
+            camera,
+            lights: Vec::new(),
+            warnings: self.notes.warnings(self.root, &SUPPORTED),
+        };
+        let bounds = model.bounds().ok_or_else(|| GltfProblem::NoFaces.at(""))?;
+        model.lights = light::lit(sources, bounds);
+        Ok(model)
+    }
+
+    /// The mesh of a node, where the node is.
+    fn piece(&mut self, placed: &Placed<'_>) -> Checked<Option<Piece>> {
+        let Some(number) = placed.node.mesh else {
+            return Ok(None);
+        };
+        let place = format!("nodes[{}]", placed.number);
+        let local = self.mesh(number, &place)?;
+        if local.shape.triangles.is_empty() {
+            return Ok(None);
+        }
+        self.triangles += local.shape.triangles.len() as u64;
+        if self.triangles > MOST {
+            let (what, limit) = ("triangles", MOST);
+            return Err(GltfProblem::TooMuch { what, limit }.at(place));
+        }
+        let mut model_from_node = placed.model_from_node;
+        if placed.node.skin.is_some() {
+            // Bones place it, not its node.
+            self.notes.skins.add(|| place.clone());
+            model_from_node = DMat4::IDENTITY;
+        }
+        let parts = self.parts(&local)?;
+        let shape = local.shape.transformed(model_from_node);
+        let fits = |p: &glam::DVec3| p.to_array().iter().all(|c| c.abs() <= LARGEST);
+        if !shape.positions.iter().all(fits) {
+            let (what, value) = (
+                "a coordinate",
+                "too large where the node puts it".to_owned(),
+            );
+            let valid = "numbers below 3.4e38";
+            return Err(GltfProblem::Bad { what, value, valid }.at(place));
+        }
+        let names = [&placed.node.name, &self.root.meshes[number].name];
+        let name = names.into_iter().flatten().next().cloned();
+        Ok(Some(Piece {
+            name: name.unwrap_or_else(|| format!("node {}", placed.number)),
+            shape,
+            parts,
+        }))
+    }
+
+    fn mesh(&mut self, number: usize, place: &str) -> Checked<Local> {
+        if let Some(read) = self.meshes.get(&number) {
+            return Ok(read.clone());
+        }
+        let (buffers, notes) = (&mut self.buffers, &mut self.notes);
+        let read = self.reader.mesh(self.root, buffers, number, notes, place)?;
+        self.meshes.insert(number, read.clone());
+        Ok(read)
+    }
+
+    fn parts(&mut self, local: &Local) -> Checked<Vec<MaterialPart>> {
+        let part = |(number, triangles): &(usize, Vec<u32>)| {
+            let materials = &self.root.materials;
+            let material = element(materials, *number, "materials", "a primitive")?;
+            let [r, g, b, _] = (material.pbr_metallic_roughness)
+                .base_color_factor
+                .unwrap_or([1.0; 4]);
+            let out = [r, g, b].iter().any(|c| !(0.0..=1.0).contains(c));
+            (self.notes.limited).add_many(usize::from(out), || format!("materials[{number}]"));
+            Ok(MaterialPart {
+                material: Material::matt([r, g, b].map(|c| c.clamp(0.0, 1.0) as f32)),
+                triangles: triangles.clone(),
+            })
+        };
+        local.painted.iter().map(part).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

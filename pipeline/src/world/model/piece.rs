@@ -1,0 +1,112 @@
+//! What a file says of a scene: solids, and sometimes an eye and lights.
+
+use glam::DVec3;
+
+use crate::world::light::Light;
+use crate::world::material::MaterialPart;
+use crate::world::shape::Shape;
+use crate::world::warning::SceneWarning;
+
+/// One solid of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Its name in the file.
+    pub name: String,
+    /// Its triangles, in the model's coordinates.
+    pub shape: Shape,
+    /// Triangles that have a material, material after material.
+    pub parts: Vec<MaterialPart>,
+}
+
+/// An eye that a file has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelCamera {
+    /// Where it is.
+    pub eye: DVec3,
+    /// A point that it looks at.
+    pub target: DVec3,
+    /// Up.
+    pub up: DVec3,
+    /// Vertical field of view, degrees.
+    pub fov_y_degrees: f64,
+    /// Distance of the near plane.
+    pub near: f64,
+}
+
+/// What a file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Solids, at least one, each with at least one triangle.
+    pub pieces: Vec<Piece>,
+    /// Its eye, if it has one.
+    pub camera: Option<ModelCamera>,
+    /// Its lights.
+    pub lights: Vec<Light>,
+    /// What was amiss without stopping it.
+    pub warnings: Vec<SceneWarning>,
+}
+
+impl Model {
+    /// A single solid.
+    pub fn of(piece: Piece, warnings: Vec<SceneWarning>) -> Self {
+        Self {
+            pieces: vec![piece],
+            camera: None,
+            lights: Vec::new(),
+            warnings,
+        }
+    }
+
+    /// Smallest and largest coordinates of all solids.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let all = self.pieces.iter().filter_map(|p| p.shape.bounds());
+        all.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+    }
+
+    /// All solids as one; of equal materials there is one part.
+    pub fn merged(self) -> (Shape, Vec<MaterialPart>) {
+        let mut parts: Vec<MaterialPart> = Vec::new();
+        let mut base = 0;
+        for piece in &self.pieces {
+            for part in &piece.parts {
+                let triangles = part.triangles.iter().map(|t| t + base);
+                match parts.iter_mut().find(|p| p.material == part.material) {
+                    Some(same) => same.triangles.extend(triangles),
+                    None => parts.push(MaterialPart {
+                        material: part.material,
+                        triangles: triangles.collect(),
+                    }),
+                }
+            }
+            base += piece.shape.triangles.len() as u32;
+        }
+        let shapes = self.pieces.into_iter().map(|p| p.shape);
+        (Shape::merged(shapes), parts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::material::Material;
+
+    #[test]
+    fn pieces_are_merged_with_their_paint() {
+        let piece = |albedo, triangles: Vec<u32>| Piece {
+            name: String::new(),
+            shape: crate::world::shape::plane(1.0, 0.0),
+            parts: vec![MaterialPart {
+                material: Material::matt([albedo; 3]),
+                triangles,
+            }],
+        };
+        let mut model = Model::of(piece(0.5, vec![1]), Vec::new());
+        model
+            .pieces
+            .extend([piece(0.25, vec![0]), piece(0.5, vec![0, 1])]);
+        let (shape, parts) = model.merged();
+        assert_eq!((shape.triangles.len(), shape.positions.len()), (6, 12));
+        let triangles: Vec<_> = parts.iter().map(|p| p.triangles.clone()).collect();
+        assert_eq!(triangles, [vec![1, 4, 5], vec![2]]);
+    }
+}

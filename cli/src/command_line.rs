@@ -9,12 +9,14 @@ use crate::verbs;
 use crate::verbs::bench::BenchArgs;
 use crate::verbs::bisect::BisectArgs;
 use crate::verbs::compare::CompareArgs;
+use crate::verbs::completions::CompletionsArgs;
 use crate::verbs::debug::DebugArgs;
 use crate::verbs::demo::DemoArgs;
 use crate::verbs::diff::DiffArgs;
 use crate::verbs::dump::DumpArgs;
 use crate::verbs::info::InfoArgs;
 use crate::verbs::light::LightArgs;
+use crate::verbs::man::ManArgs;
 use crate::verbs::pixel::PixelArgs;
 use crate::verbs::profiles::ProfilesArgs;
 use crate::verbs::record::RecordArgs;
@@ -23,6 +25,7 @@ use crate::verbs::replay::ReplayArgs;
 use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 use crate::verbs::stress::StressArgs;
+use crate::verbs::techniques::TechniquesArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
 use crate::verbs::tune::TuneArgs;
@@ -85,8 +88,12 @@ pub(crate) enum Verb {
     Wedge(WedgeArgs),
     /// List the built-in scenes
     Scenes(ListArgs),
-    /// List the techniques and their parameters
-    Techniques(ListArgs),
+    /// List the techniques and their parameters, or those of one
+    Techniques(TechniquesArgs),
+    /// Print what makes a shell complete verbs, flags and names
+    Completions(CompletionsArgs),
+    /// Write a page of `man` for each verb
+    Man(ManArgs),
 }
 
 impl Verb {
@@ -116,6 +123,8 @@ impl Verb {
             Self::Techniques(args) => verbs::techniques::run(args, registry),
             Self::Tune(args) => verbs::tune::run(args, registry),
             Self::Traffic(args) => verbs::traffic::run(args),
+            Self::Completions(args) => verbs::completions::run(args),
+            Self::Man(args) => verbs::man::run(args),
         }
     }
 }

@@ -3,12 +3,14 @@
 pub(crate) mod bench;
 pub(crate) mod bisect;
 pub(crate) mod compare;
+pub(crate) mod completions;
 pub(crate) mod debug;
 pub(crate) mod demo;
 pub(crate) mod diff;
 pub(crate) mod dump;
 pub(crate) mod info;
 pub(crate) mod light;
+pub(crate) mod man;
 pub(crate) mod pixel;
 pub(crate) mod profiles;
 pub(crate) mod record;

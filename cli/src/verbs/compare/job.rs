@@ -10,9 +10,9 @@ use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::light_image::LightImage;
 use gnomon_pipeline::world::scene::Scene;
 
-use super::args::{CompareArgs, EntryArg};
+use super::args::CompareArgs;
 use crate::error::CliError;
-use crate::flags::parameters;
+use crate::flags::{EntryArg, expand_all, parameters};
 use crate::output::files;
 use crate::verbs;
 
@@ -24,6 +24,8 @@ pub(super) struct CompareJob {
     /// Number of the light that shines.
     pub(super) light: usize,
     pub(super) entries: Vec<Entry>,
+    /// Techniques that all would have been, which do not take the light.
+    pub(super) left_out: Vec<String>,
     /// What is on the light, to all of the techniques.
     pub(super) image: Option<LightImage>,
     pub(super) reference: ReferenceKind,
@@ -43,12 +45,13 @@ pub(super) struct Entry {
 
 impl CompareJob {
     pub(super) fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
-        let entries = parse_entries(args, registry, Some(args.light))?;
         let scene = args.scene.open()?.at(args.time)?;
         let (given, count) = (args.light, scene.lights.len());
-        if given >= count {
+        let Some(light) = scene.lights.get(given) else {
             return Err(CompareError::NoSuchLight { given, count }.into());
-        }
+        };
+        let takes = |t: &dyn Technique| t.capabilities().lights.contains(&light.shape);
+        let (entries, left_out) = parse_entries(args, registry, Some(args.light), &takes)?;
         let name = verbs::file_stem(&scene.name);
         let out = args.out_dir.join(format!("{name}-compare.png"));
         files::check_target(&out)?;
@@ -56,6 +59,7 @@ impl CompareJob {
             light: args.light,
             image: common_image(&entries)?,
             entries,
+            left_out,
             reference: args.reference,
             cache: OracleCache::new(args.out_dir.join("oracle-cache")),
             settings: RenderSettings {
@@ -74,19 +78,46 @@ impl CompareJob {
     }
 }
 
-/// The techniques to compare, under light number `light` alone or under all.
+/// The techniques to compare, under light number `light` alone or under all; and those that
+/// `all` leaves out, since they do not take the light.
 pub(super) fn parse_entries(
     args: &CompareArgs,
     registry: &Registry,
     light: Option<usize>,
-) -> Result<Vec<Entry>, CliError> {
-    let entries = args
-        .techniques
+    takes: &dyn Fn(&dyn Technique) -> bool,
+) -> Result<(Vec<Entry>, Vec<String>), CliError> {
+    let chosen = chosen(args, registry);
+    let by_name = |e: &EntryArg| args.techniques.contains(e) || args.techniques.is_empty();
+    let stays = |e: &EntryArg| by_name(e) || e.find(registry).is_ok_and(|t| takes(t));
+    let (chosen, out): (Vec<_>, Vec<_>) = chosen.into_iter().partition(stays);
+    let entries = chosen
         .iter()
         .map(|arg| Entry::new(arg, args, registry, light));
     let entries = entries.collect::<Result<Vec<Entry>, CliError>>()?;
-    check_settings(args, registry)?;
-    Ok(entries)
+    check_settings(args, &chosen, registry)?;
+    Ok((entries, out.into_iter().map(|e| e.technique).collect()))
+}
+
+/// What is compared where nothing is asked for: hard, by a map, filtered, by geometry.
+const PRINCIPAL: [&str; 4] = [
+    "shadow-volumes",
+    "pcss",
+    "convolution-soft-shadows",
+    "soft-shadow-volumes",
+];
+
+/// The techniques that were asked for, or else the principal ones.
+fn chosen(args: &CompareArgs, registry: &Registry) -> Vec<EntryArg> {
+    if !args.techniques.is_empty() {
+        return expand_all(&args.techniques, registry);
+    }
+    let known = PRINCIPAL.map(EntryArg::plain).into_iter();
+    let known: Vec<_> = known.filter(|e| e.find(registry).is_ok()).collect();
+    match known.is_empty() {
+        // A registry of other crates' techniques alone.
+        true => (registry.all().iter().map(|t| EntryArg::plain(t.name()))).collect(),
+        false => known,
+    }
 }
 
 impl Entry {
@@ -96,7 +127,7 @@ impl Entry {
         registry: &Registry,
         light: Option<usize>,
     ) -> Result<Self, CliError> {
-        let technique = registry.find(&arg.technique)?;
+        let technique = arg.find(registry)?;
         let for_all = args
             .settings
             .iter()
@@ -160,14 +191,14 @@ fn common_image(entries: &[Entry]) -> Result<Option<LightImage>, CliError> {
 const LIGHT: &str = "light";
 
 /// Settings of techniques that are not compared would go unnoticed.
-fn check_settings(args: &CompareArgs, registry: &Registry) -> Result<(), CliError> {
+fn check_settings(
+    args: &CompareArgs,
+    chosen: &[EntryArg],
+    registry: &Registry,
+) -> Result<(), CliError> {
     for given in &args.settings {
         registry.find(&given.technique)?;
-        if !args
-            .techniques
-            .iter()
-            .any(|t| t.technique == given.technique)
-        {
+        if !chosen.iter().any(|t| t.technique == given.technique) {
             let (key, value) = &given.setting;
             return Err(CliError::Flag {
                 flag: "--set",

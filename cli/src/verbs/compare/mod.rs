@@ -10,5 +10,5 @@ mod pixels;
 mod run;
 mod table;
 
-pub(crate) use args::{CompareArgs, EntryArg, parse_entry};
+pub(crate) use args::CompareArgs;
 pub(crate) use run::run;

@@ -80,6 +80,10 @@ fn describe_truth(found: &Comparison) -> String {
 fn collect_warnings(job: &CompareJob, found: &Comparison) -> Vec<String> {
     let cache = found.reference.warnings.iter().map(|w| w.to_string());
     let mut lines: Vec<String> = cache.collect();
+    if !job.left_out.is_empty() {
+        let names = job.left_out.join(", ");
+        lines.push(format!("light-not-taken: left out of all: {names}"));
+    }
     for (entry, Measured { done, .. }) in job.entries.iter().zip(&found.measured) {
         let of = |w: &gnomon_pipeline::technique::Warning| {
             format!("{}: {}: {}", entry.label, w.code, w.message)

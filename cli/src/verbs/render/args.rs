@@ -16,7 +16,7 @@ pub(crate) struct RenderArgs {
     pub(crate) frame: FrameArgs,
     /// Picture to write [default: out/SCENE-TECHNIQUE.png]; with --frames the folder
     /// of frame-0000.png and so on [default: out/SCENE-TECHNIQUE]
-    #[arg(long, value_name = "FILE.png|DIR")]
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE.png|DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Also write visibility, 1 = fully lit, as a float32 array (height, width)
     #[arg(long, value_name = "FILE.npy")]

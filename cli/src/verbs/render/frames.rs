@@ -43,7 +43,7 @@ struct FrameDocument {
 pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<(), CliError> {
     check(args)?;
     args.frame.check_times(count)?;
-    let technique = registry.find(&args.frame.technique)?;
+    let technique = args.frame.technique.find(registry)?;
     job::check_wedges(args, technique, registry)?;
     let params = args.frame.params(technique)?;
     args.frame.check_light_fps(&params)?;
@@ -106,7 +106,7 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
 }
 
 fn choose_folder(args: &RenderArgs, scene: &str) -> PathBuf {
-    let by_default = || default_out(scene, &args.frame.technique).with_extension("");
+    let by_default = || default_out(scene, &args.frame.technique.technique).with_extension("");
     args.out.clone().unwrap_or_else(by_default)
 }
 

@@ -29,7 +29,7 @@ pub(super) struct RenderJob {
 
 impl RenderJob {
     pub(super) fn new(args: &RenderArgs, registry: &Registry) -> Result<Self, CliError> {
-        let technique = registry.find(&args.frame.technique)?;
+        let technique = args.frame.technique.find(registry)?;
         check_wedges(args, technique, registry)?;
         let params = args.frame.params(technique)?;
         if let Some(out) = &args.out {

@@ -28,7 +28,7 @@ pub(crate) struct TrafficArgs {
     #[arg(long)]
     pub(crate) per_pass_merged: bool,
     /// Write rows (.csv), or dram bytes of tiles or pixels of one profile (.npy)
-    #[arg(long, value_name = "FILE")]
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print one JSON document on stdout
     #[arg(long)]

@@ -73,7 +73,4 @@ FAULTS = [
     ("kept maps are known without their matrix", PIPELINE + "techniques/deferred_shadowing/atlas.rs",
      "hasher.update(&value.to_bits().to_le_bytes());",
      "hasher.update(&if FAULT { 0 } else { value.to_bits() }.to_le_bytes());", KEPT),
-    ("kept maps are known without their width", PIPELINE + "techniques/deferred_shadowing/atlas.rs",
-     "hasher.update(&self.width(map, axis).to_bits().to_le_bytes());",
-     "hasher.update(&if FAULT { 0 } else { self.width(map, axis).to_bits() }.to_le_bytes());", KEPT),
 ]

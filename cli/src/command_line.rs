@@ -36,6 +36,9 @@ use crate::verbs::wedge::WedgeArgs;
 #[command(name = "gnomon", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 fine, 1 differs or check failed, 2 bad input.")]
 pub(crate) struct Cli {
+    /// Print errors and what was asked for alone: no progress, no summary
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
     /// What to do.
     #[command(subcommand)]
     pub(crate) verb: Verb,

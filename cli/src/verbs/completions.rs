@@ -1,10 +1,10 @@
 //! `gnomon completions`: what makes a shell complete the command line.
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
-use crate::command_line::Cli;
 use crate::error::CliError;
+use crate::help;
 use crate::output;
 
 /// Flags of `completions`.
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &CompletionsArgs) -> Result<(), CliError> {
 
 fn script(shell: Shell) -> String {
     let mut out = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "gnomon", &mut out);
+    clap_complete::generate(shell, &mut help::command(), "gnomon", &mut out);
     String::from_utf8_lossy(&out).into_owned()
 }
 
@@ -43,7 +43,7 @@ mod tests {
     fn every_shell_completes_every_verb() {
         for shell in Shell::value_variants() {
             let script = script(*shell);
-            for verb in Cli::command().get_subcommands() {
+            for verb in help::command().get_subcommands() {
                 assert!(
                     script.contains(verb.get_name()),
                     "{shell} {}",

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use clap_mangen::Man;
 
-use crate::command_line::Cli;
 use crate::error::CliError;
+use crate::help;
 use crate::output;
 use crate::output::files::{Batch, check_folder};
 
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &ManArgs) -> Result<(), CliError> {
 
 /// Names and contents, the program's own first.
 fn pages() -> Result<Vec<(String, Vec<u8>)>, CliError> {
-    let mut program = Cli::command();
+    let mut program = help::command();
     program.build();
     let mut pages = Vec::new();
     add(&program, "gnomon", &mut pages)?;
@@ -67,7 +67,7 @@ mod tests {
     fn every_verb_has_a_page_that_is_the_same_each_time() {
         let (pages, again) = (pages().unwrap(), pages().unwrap());
         assert_eq!(pages, again);
-        for verb in Cli::command().get_subcommands() {
+        for verb in help::command().get_subcommands() {
             let name = format!("gnomon-{}", verb.get_name());
             let page = pages.iter().find(|(n, _)| *n == name);
             let text = String::from_utf8_lossy(&page.unwrap().1).into_owned();

@@ -84,6 +84,11 @@ impl Run {
         String::from_utf8(self.output.stdout.clone()).unwrap()
     }
 
+    /// Stdout as it is.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.output.stdout
+    }
+
     pub(crate) fn stderr(&self) -> String {
         String::from_utf8(self.output.stderr.clone()).unwrap()
     }

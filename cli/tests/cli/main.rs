@@ -7,6 +7,7 @@ mod bench;
 mod cache;
 mod common;
 mod compare;
+mod conventions;
 mod draws;
 mod environment;
 mod light_images;

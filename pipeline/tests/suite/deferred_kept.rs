@@ -145,6 +145,20 @@ fn maps_of_lights_that_turn_are_drawn_again() {
     assert_eq!([found, again], [drawn, 0.0]);
 }
 
+/// A map is known by how wide its light is: one that grows where it stands has other maps.
+#[test]
+fn maps_of_lights_that_grow_are_drawn_again() {
+    let mut scene = two_over_a_floor();
+    let set = ["map-size=32", "directions=64"];
+    let mut kept = KeptPictures::default();
+    let (_, [_, all]) = next(&scene, &set, &mut kept);
+    if let LightShape::Rectangle { edge_u, edge_v, .. } = &mut scene.lights[0].shape {
+        (*edge_u, *edge_v) = (*edge_u * 1.3, *edge_v * 1.3);
+    }
+    let (_, [found, drawn]) = next(&scene, &set, &mut kept);
+    assert_eq!([found, drawn], [0.0, all]);
+}
+
 /// A caster that turns about its own middle is drawn again, and the picture is that of the
 /// frame by itself (`next` compares).
 #[test]

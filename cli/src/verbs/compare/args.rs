@@ -55,6 +55,10 @@ pub(crate) struct CompareArgs {
     /// How to execute.
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
+    /// Also write the table for other programs, a line for each technique with all digits;
+    /// - for stdout
+    #[arg(long, value_name = "FILE.csv|-", conflicts_with = "env")]
+    pub(crate) csv: Option<PathBuf>,
     /// Print one JSON document on stdout, the table on stderr
     #[arg(long)]
     pub(crate) json: bool,

@@ -13,7 +13,7 @@ use gnomon_pipeline::world::scene::Scene;
 use super::args::CompareArgs;
 use crate::error::CliError;
 use crate::flags::{EntryArg, expand_all, parameters};
-use crate::output::files;
+use crate::output::{files, is_stdout};
 use crate::verbs;
 
 pub(super) const DEFAULT_SIZE: [u32; 2] = [640, 480];
@@ -33,6 +33,8 @@ pub(super) struct CompareJob {
     pub(super) settings: RenderSettings,
     /// The picture.
     pub(super) out: PathBuf,
+    /// The table for other programs.
+    pub(super) csv: Option<PathBuf>,
 }
 
 /// A technique with parameters.
@@ -55,6 +57,7 @@ impl CompareJob {
         let name = verbs::file_stem(&scene.name);
         let out = args.out_dir.join(format!("{name}-compare.png"));
         files::check_target(&out)?;
+        let csv = checked_csv(args)?;
         Ok(Self {
             light: args.light,
             image: common_image(&entries)?,
@@ -69,12 +72,30 @@ impl CompareJob {
             },
             scene,
             out,
+            csv,
         })
     }
 
     /// Steps of progress: rows of the truth, techniques, the picture.
     pub(super) fn steps(&self) -> u64 {
         u64::from(self.settings.size[1]) + self.entries.len() as u64 + 1
+    }
+}
+
+/// Where the table goes, if it may; stdout has room for one document.
+fn checked_csv(args: &CompareArgs) -> Result<Option<PathBuf>, CliError> {
+    let Some(path) = args.csv.clone() else {
+        return Ok(None);
+    };
+    match (is_stdout(&path), args.json) {
+        (true, true) => Err(CliError::Flag {
+            flag: "--csv",
+            value: "-".to_owned(),
+            valid: "stdout is for the document of --json; give a file, or leave --json out"
+                .to_owned(),
+        }),
+        (true, false) => Ok(Some(path)),
+        (false, _) => files::check_extension("--csv", &path, "csv").map(|()| Some(path)),
     }
 }
 

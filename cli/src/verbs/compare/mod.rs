@@ -1,6 +1,7 @@
 //! `gnomon compare`: techniques against the truth, in errors, time and bytes.
 
 mod args;
+mod csv;
 mod document;
 mod environment;
 mod job;

@@ -37,7 +37,8 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     if args.draws {
         text += &describe_draws(&done);
     }
-    output::print_summary(&text, args.json)
+    let is_taken = args.json || output::is_stdout(&job.out);
+    output::print_summary(&text, is_taken)
 }
 
 /// Work and traffic of every draw.

@@ -123,6 +123,24 @@ mod tests {
         assert_eq!(part[..2], [32, 31]);
     }
 
+    /// The cut that costs least is taken, wherever it is: between two heaps, not before the
+    /// lone triangle behind them.
+    #[test]
+    fn the_cheapest_cut_is_taken() {
+        let heap = |x: f32| (0..20).map(move |k| small(x + 0.01 * k as f32, 0.0));
+        let triangles: Vec<_> = heap(0.0)
+            .chain(heap(4.0))
+            .chain([small(9.0, 0.0)])
+            .collect();
+        let mut part: Vec<u32> = (0..41).collect();
+        assert_eq!(split(&triangles, &mut part), Some(20));
+        let mirrored: Vec<_> = triangles
+            .iter()
+            .map(|t| t.map(|[x, y, z]| [-x, y, z]))
+            .collect();
+        assert_eq!(split(&mirrored, &mut part), Some(21));
+    }
+
     /// Heaps that lie along one axis alone are told apart there, whichever it is: nothing is cut
     /// where centres are equal, and no side is ever empty.
     #[test]

@@ -12,23 +12,16 @@ use crate::observer::{
 };
 use crate::tile::{Gathered, Turn};
 
-/// Primitives of a chunk while somebody listens: no fewer can be held back.
-const CHUNK: u32 = 32;
-/// Accesses that chunks may make together before they are handed over.
-const ACCESSES: u64 = 1 << 13;
+/// Accesses that triangles may make together before they are handed over.
+const ACCESSES: u64 = 1 << 16;
 
 /// How many times the memory of an access goes with each, of what is wanted.
-fn weight(wants: Wants<'_>) -> u32 {
+fn weight(wants: Wants<'_>) -> u64 {
     match (wants.outputs, wants.texels) {
         (true, _) => 8,
         (false, true) => 2,
         (false, false) => 1,
     }
-}
-
-/// Primitives of a chunk for an observer who wants this.
-pub(super) fn chunk(wants: Wants<'_>) -> u32 {
-    CHUNK / weight(wants)
 }
 
 /// An observer of one pass, and the accesses that it has not seen yet.
@@ -185,19 +178,85 @@ fn sort_by_key<T: Send, K: Ord>(list: &mut [T], parallel: bool, key: impl Fn(&T)
     }
 }
 
-/// Cuts chunks into runs whose accesses wait in memory together: at least a chunk each.
-pub(super) fn runs(chunks: &[Chunk], wants: Wants<'_>) -> Vec<Range<usize>> {
-    let mut runs = Vec::new();
-    let whole = ACCESSES / u64::from(weight(wants));
-    let (mut start, mut room) = (0, whole);
-    for (i, chunk) in chunks.iter().enumerate() {
-        let most = chunk.triangles.iter().map(|t| t.most_blocks()).sum();
-        if room < most && start < i {
-            runs.push(start..i);
-            (start, room) = (i, whole);
-        }
-        room = room.saturating_sub(most);
+/// Triangles of a chunk that run together.
+#[derive(Debug, PartialEq)]
+pub(super) struct Piece {
+    /// Number of the chunk in its batch.
+    pub(super) chunk: usize,
+    pub(super) triangles: Range<u32>,
+}
+
+impl Piece {
+    /// Each chunk whole.
+    pub(super) fn all(chunks: &[Chunk]) -> Vec<Self> {
+        let all = chunks.iter().enumerate();
+        all.map(|(chunk, c)| Self {
+            chunk,
+            triangles: 0..c.triangles.len() as u32,
+        })
+        .collect()
     }
-    runs.push(start..chunks.len());
+}
+
+/// Cuts chunks into runs whose accesses wait in memory together: at least a triangle each.
+pub(super) fn runs(chunks: &[Chunk], wants: Wants<'_>) -> Vec<Vec<Piece>> {
+    let blocks = |c: &Chunk| c.triangles.iter().map(|t| t.most_blocks()).collect();
+    let blocks: Vec<Vec<u64>> = chunks.iter().map(blocks).collect();
+    cut(&blocks, ACCESSES / weight(wants))
+}
+
+/// Cuts chunks of triangles that touch at most so many blocks into runs of no more than
+/// `whole`, where a triangle has no more.
+fn cut(chunks: &[Vec<u64>], whole: u64) -> Vec<Vec<Piece>> {
+    let mut runs = vec![Vec::new()];
+    let mut room = whole;
+    for (chunk, blocks) in chunks.iter().enumerate() {
+        let mut start = 0;
+        for (triangle, &most) in blocks.iter().enumerate() {
+            if room < most && room < whole {
+                push(&mut runs, chunk, start..triangle);
+                runs.push(Vec::new());
+                (start, room) = (triangle, whole);
+            }
+            room = room.saturating_sub(most);
+        }
+        push(&mut runs, chunk, start..blocks.len());
+    }
     runs
+}
+
+fn push(runs: &mut [Vec<Piece>], chunk: usize, triangles: Range<usize>) {
+    if let (false, Some(run)) = (triangles.is_empty(), runs.last_mut()) {
+        let triangles = triangles.start as u32..triangles.end as u32;
+        run.push(Piece { chunk, triangles });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cut_of(chunks: &[&[u64]], whole: u64) -> Vec<Vec<(usize, Range<u32>)>> {
+        let chunks: Vec<_> = chunks.iter().map(|c| c.to_vec()).collect();
+        let runs = cut(&chunks, whole).into_iter();
+        runs.map(|run| run.into_iter().map(|p| (p.chunk, p.triangles)).collect())
+            .collect()
+    }
+
+    #[test]
+    fn runs_hold_what_fits_and_at_least_a_triangle() {
+        let chunks: [&[u64]; 4] = [&[1, 2, 3], &[], &[9, 1], &[4]];
+        assert_eq!(
+            cut_of(&chunks, 5),
+            [
+                vec![(0, 0..2)],
+                vec![(0, 2..3)],
+                vec![(2, 0..1)],
+                vec![(2, 1..2), (3, 0..1)],
+            ]
+        );
+        assert_eq!(cut_of(&chunks, 100), [[(0, 0..3), (2, 0..2), (3, 0..1)]]);
+        // Load and store operations are there without triangles.
+        assert_eq!(cut_of(&[&[]], 5), [[]]);
+    }
 }

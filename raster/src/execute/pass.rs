@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::listen::{self, Listener};
+use super::listen::{self, Listener, Piece};
 use super::prepare::{Prepared, Target, prepare};
 use super::split::{self, Lent};
 use super::tiles::TileStage;
@@ -109,7 +109,7 @@ impl<'a> Executor<'a> {
     ) -> Result<Vec<Counters>, Error> {
         let units = units(&self.prepared)?;
         let mut counters = self.vertex_counters(&units);
-        let batches = self.batches(&units, listener.as_ref().map(|l| l.wants));
+        let batches = self.batches(&units, listener.is_some());
         let mut vertices = Vertices::new(units.len());
         let mut stage = TileStage::new(self.gpu, self.grid, self.prepared.len(), lent);
         for (number, jobs) in batches.iter().enumerate() {
@@ -124,12 +124,13 @@ impl<'a> Executor<'a> {
             }
             let runs = match &listener {
                 Some(listener) => listen::runs(&chunks, listener.wants),
-                None => core::iter::once(0..chunks.len()).collect(),
+                None => vec![Piece::all(&chunks)],
             };
-            for run in runs {
-                let ends = is_last && run.end == chunks.len();
-                let (jobs, chunks) = (&jobs[run.clone()], &chunks[run]);
-                let work = draw_work(&units, jobs, &vertices.shaded, chunks, &self.prepared);
+            let last_run = runs.len() - 1;
+            for (run_number, run) in runs.iter().enumerate() {
+                let ends = is_last && run_number == last_run;
+                let run = run.iter().map(|p| (p, jobs[p.chunk], &chunks[p.chunk]));
+                let work = draw_work(&units, run, &vertices.shaded, &self.prepared);
                 stage.run(&work, ends, listener.as_ref().map(|l| l.wants));
                 if let Some(listener) = &mut listener {
                     listener.hear(stage.desks.gathered(), self.parallel);
@@ -158,9 +159,9 @@ impl<'a> Executor<'a> {
             .collect()
     }
 
-    fn batches(&self, units: &[Unit<'_>], wants: Option<Wants<'_>>) -> Vec<Vec<Job>> {
-        if let Some(wants) = wants {
-            return batches(units, listen::chunk(wants), LISTENING_BATCH);
+    fn batches(&self, units: &[Unit<'_>], is_listened_to: bool) -> Vec<Vec<Job>> {
+        if is_listened_to {
+            return batches(units, CHUNK, LISTENING_BATCH);
         }
         let threads = match self.parallel {
             true => rayon::current_num_threads() as u32,
@@ -283,24 +284,24 @@ impl Vertices {
     }
 }
 
-/// Chunks grouped by draw, in submission order.
-fn draw_work<'a>(
+/// Pieces of chunks grouped by draw, in submission order.
+fn draw_work<'a, 'c>(
     units: &[Unit<'_>],
-    jobs: &[Job],
+    run: impl Iterator<Item = (&'c Piece, Job, &'a Chunk)>,
     shaded: &'a [ShadedVertices],
-    chunks: &'a [Chunk],
     prepared: &'a [Prepared<'a>],
 ) -> Vec<DrawWork<'a>> {
     let mut work: Vec<DrawWork<'a>> = Vec::new();
     let mut first = 0;
-    for (job, chunk) in jobs.iter().zip(chunks) {
+    for (piece, job, chunk) in run {
         let draw = units[job.unit].draw;
         let chunk = ChunkRef {
             chunk,
             shaded: &shaded[job.unit],
+            triangles: piece.triangles.clone(),
             first,
         };
-        first += chunk.chunk.triangles.len() as u32;
+        first += piece.triangles.len() as u32;
         match work.last_mut() {
             Some(w) if w.draw == draw => w.chunks.push(chunk),
             _ => work.push(DrawWork {

@@ -65,6 +65,9 @@ pub(crate) const D24_SCALE: f64 = 16_777_215.0 * 32.0;
 pub(crate) const D24_BASE_LIMIT: f64 = 1_677_721_583.0;
 const D24_SLOPE_LIMIT: f64 = 33_554_432.0;
 
+/// Twice the area of a block, in the units of edges: 1/256 of a pixel.
+const TWICE_A_BLOCK: u64 = 2 * 2048 * 2048;
+
 /// Side of the window in which small triangles carry their coverage.
 const WINDOW: i32 = 8;
 
@@ -130,10 +133,17 @@ impl Triangle {
         u32::from(self.flags) & STEEP != 0
     }
 
-    /// Blocks that it covers at most.
+    /// Blocks that it covers at most: those of its bounds, or those inside it and those
+    /// that its outline passes through, each edge a column or a row further at a time.
     pub(crate) fn most_blocks(&self) -> u64 {
         let [x0, y0, x1, y1] = self.bounds.map(|b| i64::from(b >> 3));
-        ((x1 - x0 + 1).max(0) * (y1 - y0 + 1).max(0)) as u64
+        let [w, h] = [x1 - x0 + 1, y1 - y0 + 1].map(|n| n.max(0) as u64);
+        if self.mask != 0 {
+            return w * h;
+        }
+        let [a, b] = [0, 1].map(|i| [self.dx[i], self.dy[i]].map(i64::from));
+        let twice = (a[0] * b[1] - a[1] * b[0]).unsigned_abs();
+        (w * h).min(twice / TWICE_A_BLOCK + 2 * (w + h) + 4)
     }
 
     /// Whether fixed function must look closer: at the far end, or in doubles.
@@ -752,5 +762,73 @@ fn emit<L: Lanes>(
             chunk.bins.add_covered(number, &t, span, input.grid);
         }
         chunk.triangles.push(t);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle of these corners, in 1/256 of a pixel, as far as its blocks go.
+    fn triangle(corners: [[i32; 2]; 3]) -> Triangle {
+        let edge =
+            |axis: usize| core::array::from_fn(|k| corners[(k + 1) % 3][axis] - corners[k][axis]);
+        let ends = |axis: usize| {
+            let all = corners.map(|c| (c[axis] >> 8) as i16);
+            [
+                all[0].min(all[1]).min(all[2]),
+                all[0].max(all[1]).max(all[2]),
+            ]
+        };
+        let [x, y] = [ends(0), ends(1)];
+        Triangle {
+            bounds: [x[0], y[0], x[1], y[1]],
+            dx: edge(0),
+            dy: edge(1),
+            ..Triangle::zeroed()
+        }
+    }
+
+    /// Blocks that have a pixel's centre inside, one by one.
+    fn blocks(corners: [[i32; 2]; 3]) -> u64 {
+        let cross = |a: [i32; 2], b: [i32; 2], p: [i32; 2]| {
+            let [ux, uy, vx, vy] =
+                [b[0] - a[0], b[1] - a[1], p[0] - a[0], p[1] - a[1]].map(i64::from);
+            ux * vy - uy * vx
+        };
+        let inside = |p| {
+            let signs = [0, 1, 2].map(|k| cross(corners[k], corners[(k + 1) % 3], p));
+            signs.iter().all(|s| *s >= 0) || signs.iter().all(|s| *s <= 0)
+        };
+        let covered = |i: i32| {
+            let (bx, by) = (i % 64, i / 64);
+            let mut pixels = (0..64).map(|p| [8 * bx + p % 8, 8 * by + p / 8]);
+            pixels.any(|p| inside(p.map(|v| 256 * v + 128)))
+        };
+        (0..64 * 64).filter(|i| covered(*i)).count() as u64
+    }
+
+    #[test]
+    fn no_triangle_covers_more_blocks_than_it_is_said_to() {
+        let mut state = 7u32;
+        let mut next = |limit: i32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 12) as i32 % limit
+        };
+        for case in 0..60 {
+            let limit = [512 * 256, 300 * 256, 40 * 256][case % 3];
+            let corners = core::array::from_fn(|_| [next(limit), next(limit)]);
+            assert!(
+                triangle(corners).most_blocks() >= blocks(corners),
+                "{corners:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn slender_triangles_are_said_to_cover_few_blocks() {
+        let corner = 512 * 256 - 1;
+        let diagonal = triangle([[0, 0], [corner, corner], [corner, corner - 256]]);
+        assert!(diagonal.most_blocks() < 300, "{}", diagonal.most_blocks());
     }
 }

@@ -390,9 +390,14 @@ fn listened<L: Lanes, const D24: bool>(
         },
     );
     let face = env.config.face(t);
-    let mut access = BlockAccess::default();
-    fragments(l, env, t, face, place, plane, decision, mask, &mut access);
-    listen::take_down::<D24>(env, t, place, probed, &mut access);
+    // The event is made where it will stay: it is too large to be moved for nothing.
+    let mut blocks = listen::begin(env);
+    let event = blocks.len();
+    blocks.push(BlockAccess::default());
+    let access = &mut blocks[event];
+    fragments(l, env, t, face, place, plane, decision, mask, access);
+    listen::take_down::<D24>(env, t, place, probed, access);
+    listen::end(env, blocks);
 }
 
 /// Pixels on the right side of clip planes and of the far end.

@@ -101,7 +101,22 @@ impl PixelState {
     }
 }
 
-/// Takes down an event, after all is done to the block.
+/// Lends the events so far, to which one is added while its block is worked on;
+/// [`end`] takes them back.
+pub(super) fn begin(env: &mut Env<'_, '_>) -> Vec<BlockAccess> {
+    let lent = env.listening.as_mut();
+    lent.map_or_else(Vec::new, |l| core::mem::take(&mut l.gathered.blocks))
+}
+
+/// Takes the events back that [`begin`] lent.
+pub(super) fn end(env: &mut Env<'_, '_>, blocks: Vec<BlockAccess>) {
+    if let Some(l) = &mut env.listening {
+        l.gathered.blocks = blocks;
+    }
+}
+
+/// Takes down an event, the last of those that [`begin`] lent, after all is done to the
+/// block.
 pub(super) fn take_down<const D24: bool>(
     env: &mut Env<'_, '_>,
     t: &Triangle,
@@ -116,7 +131,7 @@ pub(super) fn take_down<const D24: bool>(
     access.front = t.is_front();
     details::<D24>(env, t, place, probed, access);
     let turn = Turn {
-        triangle: env.chunk.first + env.triangle,
+        triangle: env.chunk.number(env.triangle),
         place: ((place.y / 8) << 16) | (place.x / 8),
     };
     let Some(l) = &mut env.listening else { return };
@@ -128,7 +143,6 @@ pub(super) fn take_down<const D24: bool>(
         }
     }
     l.gathered.turns.push(turn);
-    l.gathered.blocks.push(*access);
 }
 
 /// Takes down what is told beside the event.
@@ -142,7 +156,7 @@ fn details<const D24: bool>(
     let shaded = shaded(env.config, env.config.face(t), access);
     let record = probed.map(|p| fragment::<D24>(env, place, &p, shaded, access));
     let Some(l) = &mut env.listening else { return };
-    let event = l.gathered.blocks.len() as u32;
+    let event = l.gathered.turns.len() as u32;
     l.gathered.texels.end_event(event, &env.config.textures);
     if let Some(record) = record {
         l.gathered

@@ -20,6 +20,8 @@ mod stencil;
 mod target;
 mod witness;
 
+use core::ops::Range;
+
 use block::{BlockStage, General};
 use lean::Lean;
 
@@ -98,12 +100,33 @@ impl TileStageCounters {
     }
 }
 
-/// A chunk with what its triangles refer to.
+/// Triangles of a chunk with what they refer to.
 pub(crate) struct ChunkRef<'a> {
     pub(crate) chunk: &'a Chunk,
     pub(crate) shaded: &'a ShadedVertices,
-    /// Number of its first triangle among those of all chunks that run together.
+    /// Those that run now.
+    pub(crate) triangles: Range<u32>,
+    /// Number of the first of them among all that run together.
     pub(crate) first: u32,
+}
+
+impl<'a> ChunkRef<'a> {
+    /// Numbers in the chunk of those that may touch tile number `tile`, which stand there
+    /// in order.
+    fn bin(&self, tile: usize) -> &'a [u32] {
+        let bin = self.chunk.bins.tile(tile);
+        if self.triangles.len() == self.chunk.triangles.len() {
+            return bin;
+        }
+        let start = bin.partition_point(|t| *t < self.triangles.start);
+        let length = bin[start..].partition_point(|t| *t < self.triangles.end);
+        &bin[start..start + length]
+    }
+
+    /// Number of triangle `t` of the chunk among all that run together.
+    pub(crate) fn number(&self, t: u32) -> u32 {
+        self.first + (t - self.triangles.start)
+    }
 }
 
 /// One draw (or a part of one) for the tile stage.
@@ -145,7 +168,7 @@ pub(crate) fn run_tile(
     for w in work {
         tell_left(level, w, target, &mut listening, w.draw as u32);
         for chunk in &w.chunks {
-            let bin = chunk.chunk.bins.tile(tile_number);
+            let bin = chunk.bin(tile_number);
             if bin.is_empty() {
                 continue;
             }

@@ -189,14 +189,17 @@ fn values(p: &ParamInfo) -> String {
 /// Techniques that share a parameter before it is listed for all of them at once.
 const SEVERAL: usize = 4;
 
-/// Parameters that several techniques have alike, defaults included.
+/// Parameters that several techniques have alike, defaults included; of those of one name the
+/// one that most have.
 fn shared(registry: &Registry) -> Vec<ParamInfo> {
-    let mut shared: Vec<ParamInfo> = Vec::new();
     let all = || registry.all().iter().flat_map(|t| t.params());
-    for info in all() {
-        let count = all().filter(|p| *p == info).count();
-        if count >= SEVERAL && !shared.contains(info) {
-            shared.push(*info);
+    let count = |info: &ParamInfo| all().filter(|p| *p == info).count();
+    let mut shared: Vec<ParamInfo> = Vec::new();
+    for info in all().filter(|info| count(info) >= SEVERAL) {
+        match shared.iter_mut().find(|s| s.name == info.name) {
+            Some(known) if count(known) < count(info) => *known = *info,
+            Some(_) => {}
+            None => shared.push(*info),
         }
     }
     shared
@@ -261,6 +264,10 @@ mod tests {
         let registry = Registry::built_in();
         let elsewhere = shared(&registry);
         assert!(elsewhere.len() > 3);
+        let mut names: Vec<&str> = elsewhere.iter().map(|p| p.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), elsewhere.len(), "a name means one thing");
         for technique in registry.all() {
             let text = list(*technique, &elsewhere);
             let whole = list(*technique, &[]);

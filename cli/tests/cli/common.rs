@@ -36,6 +36,11 @@ impl Folder {
         names
     }
 
+    /// A picture's pixels; files also say what they are of.
+    pub(crate) fn pixels(&self, name: &str) -> Vec<u8> {
+        image::open(self.path(name)).unwrap().to_rgba8().into_raw()
+    }
+
     /// Runs `gnomon` here; arguments are separated by blanks.
     pub(crate) fn gnomon(&self, arguments: &str) -> Run {
         self.gnomon_with(arguments, &[])

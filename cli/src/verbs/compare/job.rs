@@ -109,7 +109,7 @@ pub(super) fn parse_entries(
 ) -> Result<(Vec<Entry>, Vec<String>), CliError> {
     let chosen = chosen(args, registry);
     let by_name = |e: &EntryArg| args.techniques.contains(e) || args.techniques.is_empty();
-    let stays = |e: &EntryArg| by_name(e) || e.find(registry).is_ok_and(|t| takes(t));
+    let stays = |e: &EntryArg| by_name(e) || e.find(registry).is_ok_and(takes);
     let (chosen, out): (Vec<_>, Vec<_>) = chosen.into_iter().partition(stays);
     let entries = chosen
         .iter()

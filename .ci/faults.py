@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Switches faults on, one after the other, and says which tests see them.
 
-    python3 .ci/faults.py [--list baselines|thesis|maps|tools] [--only N,N] [--folder DIR]
+    python3 .ci/faults.py [--list baselines|thesis|maps|tools|lines] [--only N,N] [--folder DIR]
 
 A copy of the tree gets all faults at once, each behind a number that the environment
 variable GNOMON_FAULT chooses; so it is built once (ten minutes on two cores) and each fault
@@ -22,12 +22,12 @@ import threading
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # beside the lists
-from fault_lists import baselines, maps, thesis, tools  # noqa: E402
+from fault_lists import baselines, lines, maps, thesis, tools  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 SHADERS = "shaders-rs/src/"
 LISTS = {"baselines": baselines.FAULTS, "thesis": thesis.FAULTS, "maps": maps.FAULTS,
-         "tools": tools.FAULTS}
+         "tools": tools.FAULTS, "lines": lines.FAULTS}
 FAULTS = [fault for faults in LISTS.values() for fault in faults]
 
 SWITCH = """
@@ -40,16 +40,30 @@ pub fn fault(n: u32) -> bool {
 """
 
 
-def put_in(folder):
-    """Writes all faults into the copy."""
-    library = folder / SHADERS / "lib.rs"
-    library.write_text(library.read_text() + SWITCH)
+def faulty():
+    """Text of each file with all its faults, by name."""
+    library = SHADERS + "lib.rs"
+    texts = {library: (ROOT / library).read_text() + SWITCH}
     for number, (_, name, old, new, _) in enumerate(FAULTS, 1):
-        path = folder / name
-        text = path.read_text()
+        text = texts.get(name) or (ROOT / name).read_text()
         if text.count(old) != 1:
             sys.exit(f"fault {number}: {name} has {text.count(old)} times: {old}")
-        path.write_text(text.replace(old, new.replace("FAULT", switch(name, number))))
+        texts[name] = text.replace(old, new.replace("FAULT", switch(name, number)))
+    return texts
+
+
+def copy(folder):
+    """Copies the tree with all faults; what is there already stays, so that a folder that is
+    kept is built again in parts only."""
+    texts = faulty()
+    own = {str(ROOT / name) for name in texts}
+    shutil.copytree(ROOT, folder, dirs_exist_ok=True,
+                    copy_function=lambda a, b: a in own or shutil.copy2(a, b),
+                    ignore=shutil.ignore_patterns("target", ".git", "out", "__pycache__"))
+    for name, text in texts.items():
+        path = folder / name
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
 
 
 def switch(name, number):
@@ -145,9 +159,7 @@ def main():
     given = parser.parse_args()
     numbers = [int(n) for n in given.only.split(",")] if given.only else numbers_of(given.list)
     folder = Path(given.folder or tempfile.mkdtemp(prefix="gnomon-faults-"))
-    shutil.copytree(ROOT, folder, dirs_exist_ok=True,
-                    ignore=shutil.ignore_patterns("target", ".git", "out", "__pycache__"))
-    put_in(folder)
+    copy(folder)
     binaries = build(folder)
     unseen = []
     runs = ([] if 0 in numbers else groups_of(numbers))

@@ -9,6 +9,7 @@ use crate::verbs;
 use crate::verbs::bench::BenchArgs;
 use crate::verbs::bisect::BisectArgs;
 use crate::verbs::compare::CompareArgs;
+use crate::verbs::completions::CompletionsArgs;
 use crate::verbs::debug::DebugArgs;
 use crate::verbs::demo::DemoArgs;
 use crate::verbs::diff::DiffArgs;
@@ -16,6 +17,7 @@ use crate::verbs::dump::DumpArgs;
 use crate::verbs::export::ExportArgs;
 use crate::verbs::info::InfoArgs;
 use crate::verbs::light::LightArgs;
+use crate::verbs::man::ManArgs;
 use crate::verbs::pixel::PixelArgs;
 use crate::verbs::profiles::ProfilesArgs;
 use crate::verbs::record::RecordArgs;
@@ -24,6 +26,7 @@ use crate::verbs::replay::ReplayArgs;
 use crate::verbs::report::ReportArgs;
 use crate::verbs::reproduce::ReproduceArgs;
 use crate::verbs::stress::StressArgs;
+use crate::verbs::techniques::TechniquesArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
 use crate::verbs::tune::TuneArgs;
@@ -34,6 +37,9 @@ use crate::verbs::wedge::WedgeArgs;
 #[command(name = "gnomon", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 fine, 1 differs or check failed, 2 bad input.")]
 pub(crate) struct Cli {
+    /// Print errors and what was asked for alone: no progress, no summary
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
     /// What to do.
     #[command(subcommand)]
     pub(crate) verb: Verb,
@@ -88,8 +94,12 @@ pub(crate) enum Verb {
     Export(ExportArgs),
     /// List the built-in scenes
     Scenes(ListArgs),
-    /// List the techniques and their parameters
-    Techniques(ListArgs),
+    /// List the techniques and their parameters, or those of one
+    Techniques(TechniquesArgs),
+    /// Print what makes a shell complete verbs, flags and names
+    Completions(CompletionsArgs),
+    /// Write a page of `man` for each verb
+    Man(ManArgs),
 }
 
 impl Verb {
@@ -120,6 +130,8 @@ impl Verb {
             Self::Techniques(args) => verbs::techniques::run(args, registry),
             Self::Tune(args) => verbs::tune::run(args, registry),
             Self::Traffic(args) => verbs::traffic::run(args),
+            Self::Completions(args) => verbs::completions::run(args),
+            Self::Man(args) => verbs::man::run(args),
         }
     }
 }

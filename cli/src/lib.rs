@@ -36,6 +36,8 @@ mod error;
 #[cfg(feature = "cli")]
 mod flags;
 #[cfg(feature = "cli")]
+mod help;
+#[cfg(feature = "cli")]
 mod output;
 #[cfg(feature = "cli")]
 mod overlay;

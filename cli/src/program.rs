@@ -4,13 +4,13 @@ use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::FromArgMatches;
 use gnomon_pipeline::technique::Technique;
 use gnomon_pipeline::techniques::Registry;
 
 use crate::command_line::Cli;
 use crate::error::CliError;
-use crate::threads;
+use crate::{help, output, threads};
 
 /// The program with `techniques` beside the built-in ones, on this process's arguments: a
 /// `main` of one line. Where they cannot be registered it says why and gives 2.
@@ -42,10 +42,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 /// The same with the techniques of `registry` instead of the built-in ones.
 pub fn run_with(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
+    let mut command = help::command();
+    let parsed = command.try_get_matches_from_mut(arguments);
+    let cli = match parsed.and_then(|m| Cli::from_arg_matches(&m)) {
         Ok(cli) => cli,
-        Err(error) => return print_usage(&error),
+        Err(error) => return print_usage(&error.format(&mut command)),
     };
+    output::set_quiet(cli.quiet);
     match threads::start().and_then(|()| cli.verb.run(registry)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => print_error(&error),

@@ -191,8 +191,21 @@ pub enum ShadowTo {
     Visibility,
     /// Minus this much of what is not seen, to be added: one of several views.
     Share(f32),
+    /// The share that is seen by receivers whose positions have this w; others are left alone.
+    VisibilityOf(f32),
 }
-uniforms!(enum ShadowTo { 0: Visibility, 1: Share(share) });
+uniforms!(enum ShadowTo { 0: Visibility, 1: Share(share), 2: VisibilityOf(number) });
+
+impl ShadowTo {
+    /// Which positions are looked at, by their w.
+    #[inline(always)]
+    fn wants<L: Lanes>(&self, l: L, w: F32<L>) -> Mask<L> {
+        match *self {
+            Self::VisibilityOf(number) => w.eq(F32::splat(l, number)),
+            Self::Visibility | Self::Share(_) => w.gt(F32::splat(l, 0.0)),
+        }
+    }
+}
 
 /// Looks up shadows of one view.
 #[derive(Clone, Debug, PartialEq)]
@@ -234,7 +247,7 @@ impl<F: ShadowFilter> FragmentShader for Shadow<F> {
         let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
         let mapping = &self.mapping;
         let place = mapping.locate(l, [x, y, z]);
-        let receives = shadowable.gt(zero) & place.belongs;
+        let receives = self.to.wants(l, shadowable) & place.belongs;
         f.discard(!receives);
         if !(receives & f.live()).any() {
             return;
@@ -261,7 +274,7 @@ impl<F: ShadowFilter> FragmentShader for Shadow<F> {
         };
         let lit = self.filter.lit(l, f, mapping, &receiver);
         let red = match self.to {
-            ShadowTo::Visibility => lit,
+            ShadowTo::Visibility | ShadowTo::VisibilityOf(_) => lit,
             ShadowTo::Share(share) => (lit - one) * share,
         };
         f.set_color(0, [red, zero, zero, zero]);

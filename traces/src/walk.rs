@@ -133,3 +133,99 @@ fn stays(store: &mut StoreOp, last: bool) {
         *store = StoreOp::Store;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use gnomon_raster::shader::{
+        ScalarFragmentOutput, ScalarVertexOutput, per_fragment, per_vertex,
+    };
+    use gnomon_raster::state::{ColorTargetState, DepthStencilState, PrimitiveState};
+    use gnomon_raster::{
+        ColorAttachment, Draw, Format, RenderPipeline, Subresource, TextureDescriptor, TextureId,
+    };
+
+    use super::*;
+
+    /// Adds `value` everywhere.
+    fn adds(value: f32) -> Draw {
+        let pipeline = RenderPipeline {
+            label: "adds".into(),
+            vertex: per_vertex(&[], |v| {
+                let [x, y] = [[-1.0, 3.0], [-1.0, -1.0], [3.0, -1.0]][v.vertex_index as usize];
+                ScalarVertexOutput {
+                    position: [x, y, 0.5, 1.0],
+                    ..Default::default()
+                }
+            }),
+            fragment: Some(per_fragment(Default::default(), move |_| {
+                ScalarFragmentOutput::color([value, 0.0, 0.0, 0.0])
+            })),
+            primitive: PrimitiveState::default(),
+            depth_stencil: DepthStencilState::default(),
+            color_targets: vec![ColorTargetState::ADDITIVE],
+        };
+        Draw::vertices_only("adds", &Arc::new(pipeline), 3)
+    }
+
+    /// Two passes on one image: 1, 2 and 4 over a clear of 100; then 8 and 16 over that.
+    fn recording() -> (Recording, TextureId) {
+        let mut r = Recording::default();
+        let image = TextureDescriptor::d2("sum", Format::R32Float, 4, 4);
+        let texture = r.create(&image).unwrap();
+        let pass = |label: &str, load, values: &[f32]| RenderPass {
+            label: label.into(),
+            color: vec![ColorAttachment {
+                texture,
+                subresource: Subresource::default(),
+                load,
+                store: StoreOp::Store,
+            }],
+            depth_stencil: None,
+            draws: values.iter().map(|v| adds(*v)).collect(),
+        };
+        let clear = LoadOp::Clear([100.0, 0.0, 0.0, 0.0]);
+        r.list.passes = vec![
+            pass("first", clear, &[1.0, 2.0, 4.0]),
+            pass("second", LoadOp::Load, &[8.0, 16.0]),
+        ];
+        (r, texture)
+    }
+
+    fn sum(gpu: &Gpu, texture: TextureId) -> f32 {
+        let texels = gpu.texture(texture).unwrap();
+        let texels = texels.read_color(Subresource::default()).unwrap();
+        assert!(texels.iter().all(|t| t.0[0] == texels[0].0[0]));
+        texels[0].0[0]
+    }
+
+    /// One walk from draw to draw: each is drawn once, on what was there.
+    #[test]
+    fn each_draw_is_drawn_once_on_what_was_there() {
+        let (recording, texture) = recording();
+        let mut walk = Walk::start(&recording, GpuConfig::default()).unwrap();
+        let places = [[0, 0], [0, 1], [0, 2], [1, 0], [1, 1]];
+        let sums = places.map(|at| {
+            walk.reach(at).unwrap();
+            sum(&walk.gpu, texture)
+        });
+        assert_eq!(sums, [101.0, 103.0, 107.0, 115.0, 131.0]);
+        for (at, wanted) in places.into_iter().zip(sums) {
+            let gpu = draw_until(&recording, Until::Draw(at), GpuConfig::default()).unwrap();
+            assert_eq!(sum(&gpu, texture), wanted, "{at:?}");
+        }
+        for (until, wanted) in [
+            (Until::Pass(0), 107.0),
+            (Until::Pass(1), 131.0),
+            (Until::End, 131.0),
+        ] {
+            let gpu = draw_until(&recording, until, GpuConfig::default()).unwrap();
+            assert_eq!(sum(&gpu, texture), wanted, "{until:?}");
+        }
+        let mut walk = Walk::start(&recording, GpuConfig::default()).unwrap();
+        walk.reach([0, 1]).unwrap();
+        walk.finish().unwrap();
+        assert_eq!(sum(&walk.gpu, texture), 131.0);
+    }
+}

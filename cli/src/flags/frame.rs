@@ -8,8 +8,8 @@ use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::scene::{Scene, SceneError, SceneSource};
 
 use super::{
-    EnvArgs, GpuArgs, SceneArgs, ViewArgs, parameters, parse_rate, parse_setting, parse_size,
-    parse_time,
+    EntryArg, EnvArgs, GpuArgs, SceneArgs, ViewArgs, parameters, parse_entry, parse_rate,
+    parse_setting, parse_size, parse_time,
 };
 use crate::error::CliError;
 use crate::output::progress::Progress;
@@ -26,9 +26,16 @@ pub(crate) struct FrameArgs {
     /// The scene.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// Technique (see `gnomon techniques`)
-    #[arg(long, value_name = "NAME", default_value = "shadow-volumes")]
-    pub(crate) technique: String,
+    /// Technique (see `gnomon techniques`), with settings behind colons if need be:
+    /// NAME:KEY=VALUE:...
+    #[arg(
+        long,
+        alias = "techniques",
+        value_name = "NAME",
+        default_value = "shadow-volumes",
+        value_parser = parse_entry
+    )]
+    pub(crate) technique: EntryArg,
     /// A parameter of the technique; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse_setting)]
     pub(crate) settings: Vec<(String, String)>,
@@ -94,7 +101,12 @@ impl FrameArgs {
 
     /// The parameters of `technique` that were given.
     pub(crate) fn params(&self, technique: &dyn Technique) -> Result<Params, TechniqueError> {
-        parameters(technique, &self.settings, self.gpu.no_skip)
+        let given = self.technique.settings.iter().chain(&self.settings);
+        parameters(
+            technique,
+            &given.cloned().collect::<Vec<_>>(),
+            self.gpu.no_skip,
+        )
     }
 
     /// The parameters of frame number `frame` of an animation: lights show the image of

@@ -6,6 +6,7 @@ mod frame;
 mod listing;
 mod scene;
 mod settings;
+mod technique;
 mod values;
 mod view;
 
@@ -15,5 +16,6 @@ pub(crate) use frame::{DEFAULT_SIZE, FrameArgs};
 pub(crate) use listing::ListArgs;
 pub(crate) use scene::SceneArgs;
 pub(crate) use settings::parameters;
+pub(crate) use technique::{EntryArg, expand_all, parse_entry};
 pub(crate) use values::{parse_rate, parse_setting, parse_size, parse_time};
 pub(crate) use view::ViewArgs;

@@ -125,8 +125,19 @@ pub(crate) fn check_target(target: &Path) -> Result<(), CliError> {
             io::ErrorKind::NotADirectory,
             &format!("{} is not a folder", found.display()),
         )),
-        _ => Ok(()),
+        Some(found) => probe(found).map_err(|source| CliError::Write {
+            path: target.to_owned(),
+            source,
+        }),
+        None => Ok(()),
     }
+}
+
+/// Whether a file can be made in a folder: it is, and removed again.
+fn probe(folder: &Path) -> io::Result<()> {
+    let place = temporary_name(&folder.join("probe"));
+    fs::write(&place, b"")?;
+    fs::remove_file(&place)
 }
 
 /// Refuses a target of another kind of file.
@@ -135,14 +146,26 @@ pub(crate) fn check_extension(
     target: &Path,
     extension: &str,
 ) -> Result<(), CliError> {
+    check_extensions(flag, target, &[extension])
+}
+
+/// The same of several kinds.
+pub(crate) fn check_extensions(
+    flag: &'static str,
+    target: &Path,
+    extensions: &[&str],
+) -> Result<(), CliError> {
     let given = target.extension().unwrap_or_default();
-    if given.eq_ignore_ascii_case(extension) {
+    if extensions.iter().any(|e| given.eq_ignore_ascii_case(e)) {
         return check_target(target);
     }
     Err(CliError::Flag {
         flag,
         value: target.display().to_string(),
-        valid: format!("expected a file name that ends in .{extension}"),
+        valid: format!(
+            "expected a file name that ends in .{}",
+            extensions.join(" or .")
+        ),
     })
 }
 

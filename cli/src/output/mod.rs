@@ -9,6 +9,7 @@ pub(crate) mod json;
 pub(crate) mod npy;
 pub(crate) mod numbers;
 pub(crate) mod png;
+pub(crate) mod png_text;
 pub(crate) mod progress;
 pub(crate) mod shell;
 pub(crate) mod tables;
@@ -17,10 +18,38 @@ pub(crate) mod warnings;
 pub(crate) mod wrap;
 
 use std::io::{self, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
 use crate::error::CliError;
+
+/// Whether progress and summaries are left out.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Says whether they are.
+pub(crate) fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Whether a file's name stands for stdout.
+pub(crate) fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Writes a file's bytes on stdout. A reader that went away is no error.
+pub(crate) fn write_stdout(bytes: &[u8]) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Stdout(e)),
+        _ => Ok(()),
+    }
+}
 
 /// Prints `text` and a line end on stdout. A reader that went away is no error.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
@@ -37,9 +66,13 @@ pub(crate) fn print_json(document: &impl Serialize) -> Result<(), CliError> {
     print(&text)
 }
 
-/// Prints for people: on stdout, or on stderr where stdout is for JSON.
-pub(crate) fn print_summary(text: &str, json: bool) -> Result<(), CliError> {
-    if json {
+/// Prints for people, unless they want none of it: on stdout, or on stderr where stdout is
+/// for a document or a file.
+pub(crate) fn print_summary(text: &str, is_taken: bool) -> Result<(), CliError> {
+    if is_quiet() {
+        return Ok(());
+    }
+    if is_taken {
         // A summary that nobody can read is not worth failing for.
         let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
         return Ok(());

@@ -153,3 +153,41 @@ pub(crate) fn picture(texture: &Texture, image: Subresource) -> Result<Picture, 
         pixels: pixels.collect(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_texels(channels: usize) -> Values {
+        let numbers = (0..2 * channels).map(|k| 0.5 + k as f64).collect();
+        Values {
+            size: [2, 1],
+            channels,
+            numbers,
+        }
+    }
+
+    #[test]
+    fn channels_are_told_apart() {
+        let values = two_texels(3);
+        for (number, wanted) in [[0.5, 3.5], [1.5, 4.5], [2.5, 5.5]].iter().enumerate() {
+            assert_eq!(values.channel(number).collect::<Vec<_>>(), wanted);
+        }
+    }
+
+    /// One channel is grey, missing ones are 0, alpha is 1 where there is none.
+    #[test]
+    fn every_channel_is_in_an_exr_file() {
+        for (channels, wanted) in [
+            (1, [0.5, 0.5, 0.5, 1.0]),
+            (2, [0.5, 1.5, 0.0, 1.0]),
+            (3, [0.5, 1.5, 2.5, 1.0]),
+            (4, [0.5, 1.5, 2.5, 3.5]),
+        ] {
+            let file = exr(&two_texels(channels));
+            let read = image::load_from_memory(&file).unwrap().to_rgba32f();
+            assert_eq!(read.get_pixel(0, 0).0, wanted, "{channels}");
+            assert_eq!(read.get_pixel(1, 0).0[0], 0.5 + channels as f32);
+        }
+    }
+}

@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 pub(crate) mod bisect;
 pub(crate) mod compare;
+pub(crate) mod completions;
 pub(crate) mod debug;
 pub(crate) mod demo;
 pub(crate) mod diff;
@@ -10,6 +11,7 @@ pub(crate) mod dump;
 pub(crate) mod export;
 pub(crate) mod info;
 pub(crate) mod light;
+pub(crate) mod man;
 pub(crate) mod pixel;
 pub(crate) mod profiles;
 pub(crate) mod record;

@@ -36,6 +36,11 @@ impl Folder {
         names
     }
 
+    /// A picture's pixels; files also say what they are of.
+    pub(crate) fn pixels(&self, name: &str) -> Vec<u8> {
+        image::open(self.path(name)).unwrap().to_rgba8().into_raw()
+    }
+
     /// Runs `gnomon` here; arguments are separated by blanks.
     pub(crate) fn gnomon(&self, arguments: &str) -> Run {
         self.gnomon_with(arguments, &[])
@@ -82,6 +87,11 @@ pub(crate) struct Run {
 impl Run {
     pub(crate) fn stdout(&self) -> String {
         String::from_utf8(self.output.stdout.clone()).unwrap()
+    }
+
+    /// Stdout as it is.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.output.stdout
     }
 
     pub(crate) fn stderr(&self) -> String {

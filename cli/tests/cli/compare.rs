@@ -272,7 +272,6 @@ fn bad_input_is_refused_and_leaves_nothing() {
         assert!(folder.names().is_empty(), "{arguments}");
     };
     let t = "--techniques shadow-volumes";
-    refused("compare cylinder", &["--techniques"]);
     refused(
         "compare cylinder --techniques shadow-volume",
         &["did you mean 'shadow-volumes'"],

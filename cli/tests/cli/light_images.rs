@@ -30,7 +30,7 @@ fn an_animation_goes_through_the_images() {
             "render parallel-plates {set} --frames 4 --out video"
         ))
         .fine();
-    let picture = |name: &str| fs::read(folder.path(name)).unwrap();
+    let picture = |name: &str| folder.pixels(name);
     let frames: Vec<_> = (0..4)
         .map(|k| picture(&format!("video/frame-000{k}.png")))
         .collect();

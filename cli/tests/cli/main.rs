@@ -8,6 +8,7 @@ mod bench;
 mod cache;
 mod common;
 mod compare;
+mod conventions;
 mod draws;
 mod environment;
 mod export;

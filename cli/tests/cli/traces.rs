@@ -22,7 +22,7 @@ fn a_frame_is_recorded_told_of_and_replayed() {
     folder
         .gnomon("render parallel-plates --size 48x32 --out b.png")
         .fine();
-    let [a, b] = ["a.png", "b.png"].map(|name| fs::read(folder.path(name)).unwrap());
+    let [a, b] = ["a.png", "b.png"].map(|name| folder.pixels(name));
     assert_eq!(a, b, "the picture of a trace is the picture of its scene");
     let lines = folder.gnomon("dump a.gnt").fine().stdout();
     assert!(lines.lines().count() >= 3);
@@ -136,7 +136,7 @@ fn images_and_buffers_are_written_as_they_are_stored() {
         .gnomon("render parallel-plates --size 48x32 --out b.png")
         .fine();
     let shown = names.iter().filter(|n| n.ends_with("last.png"));
-    let same = shown.filter(|n| read(&format!("images/{n}")) == read("b.png"));
+    let same = shown.filter(|n| folder.pixels(&format!("images/{n}")) == folder.pixels("b.png"));
     assert_eq!(same.count(), 1);
     assert!(folder.path("buffers/pass-0-draw-0-vertices.bin").exists());
 }

@@ -26,6 +26,8 @@ fn rows_add_up_to_the_totals_in_each_form() {
         let csv = std::fs::read_to_string(folder.path(&format!("{by}.csv"))).unwrap();
         let rows = document["rows"].as_array().unwrap().len();
         assert_eq!(csv.lines().count(), rows + 1, "{by}");
+        let line = format!("traffic a.gnt --profile imr-2008 --by {by} --out -");
+        assert_eq!(folder.gnomon(&line).fine().stdout(), csv, "{by}");
     }
 }
 
@@ -76,6 +78,7 @@ fn what_is_wrong_is_said() {
         ("--profile mine.toml", "`order` is 3"),
         ("--profile naive --out x.npy", "--by tile"),
         ("--profile naive --out x.png", ".csv"),
+        ("--profile naive --json --out -", "document of --json"),
     ] {
         let run = folder.gnomon(&format!("traffic a.gnt {flags}"));
         run.refused(&[said]);

@@ -76,6 +76,11 @@ fn frames_of_an_animation_all_keep_the_budget() {
     let (one, five) = (of(""), of("--frames 5 --fps 2"));
     assert_eq!((&one["frames"], &five["frames"]), (&1.into(), &5.into()));
     assert!(number(&five["winner"], "rmse") > number(&one["winner"], "rmse"));
+    // The largest is that of the second frame, neither the first nor the last.
+    let rmse = |time: &str| number(&of(&format!("--time {time}"))["winner"], "rmse");
+    let each = ["0", "0.5", "1", "1.5", "2"].map(rmse);
+    assert!(each[1] > each[0] && each[1] > each[4], "{each:?}");
+    assert_eq!(number(&five["winner"], "rmse"), each[1]);
 }
 
 #[test]

@@ -113,6 +113,7 @@ impl Technique for Pcf {
             maps: settings.maps,
             horizon: params.get(&HORIZON)?,
             margin,
+            apart: false,
         };
         mapped.frame(
             |light| Sources::centre(self.name(), scene, light),

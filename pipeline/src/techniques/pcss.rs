@@ -190,6 +190,7 @@ impl Technique for Pcss {
             maps: settings.maps,
             horizon: settings.horizon,
             margin: MARGIN,
+            apart: false,
         };
         mapped.frame(
             |light| Sources::centre(self.name(), scene, light),

@@ -45,6 +45,7 @@ impl Technique for ShadowMap {
             maps: MapSettings::read(params)?,
             horizon: params.get(&HORIZON)?,
             margin: Margin::ONE_TEXEL,
+            apart: false,
         };
         mapped.frame(
             |light| Sources::centre(self.name(), scene, light),

@@ -114,6 +114,7 @@ impl Technique for ShadowMapsN {
             maps: settings.maps,
             horizon: settings.horizon,
             margin: Margin::ONE_TEXEL,
+            apart: false,
         };
         mapped.frame(
             |light| self.points(scene, light, &settings),

@@ -2,6 +2,7 @@
 //! the files they come from. Knows nothing of shadows.
 
 pub mod adjacency;
+pub mod convexity;
 pub mod environment;
 pub mod error;
 pub mod export;

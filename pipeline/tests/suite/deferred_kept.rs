@@ -1,6 +1,7 @@
 //! Occlusion maps that stay from frame to frame: the picture is that of the frame by
 //! itself, to the bit, and only what moved is drawn again.
 
+use glam::DVec3;
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render, render_next};
 use gnomon_pipeline::technique::{KeptPictures, Params, PassRole};
 use gnomon_pipeline::techniques::find;
@@ -121,6 +122,60 @@ fn maps_of_lights_that_stay_are_kept() {
     // Other maps are other pictures.
     let (_, [found, _]) = next(&scene, &["map-size=64", "directions=64"], &mut kept);
     assert_eq!(found, 0.0);
+}
+
+/// A map is known by where it is seen from: lights without extent have squares of one width
+/// wherever they are, and the occluders stay.
+#[test]
+fn maps_of_lights_that_turn_are_drawn_again() {
+    let mut scene = two_over_a_floor();
+    let set = ["map-size=32", "directions=64"];
+    let mut kept = KeptPictures::default();
+    let mut turned = |x: f64| {
+        let towards = DVec3::new(x, 1.0, 0.2);
+        scene.lights[0].shape = LightShape::Directional { towards };
+        next(&scene, &set, &mut kept)
+    };
+    let (first, [found, all]) = turned(0.3);
+    assert!(found == 0.0 && all >= 3.0, "{found} {all}");
+    let (second, [found, drawn]) = turned(-0.4);
+    assert!(found == 0.0 && drawn > 0.0, "{found} {drawn}");
+    assert_ne!(first.visibility_hash(), second.visibility_hash());
+    let (_, [found, again]) = turned(-0.4);
+    assert_eq!([found, again], [drawn, 0.0]);
+}
+
+/// A map is known by how wide its light is: one that grows where it stands has other maps.
+#[test]
+fn maps_of_lights_that_grow_are_drawn_again() {
+    let mut scene = two_over_a_floor();
+    let set = ["map-size=32", "directions=64"];
+    let mut kept = KeptPictures::default();
+    let (_, [_, all]) = next(&scene, &set, &mut kept);
+    if let LightShape::Rectangle { edge_u, edge_v, .. } = &mut scene.lights[0].shape {
+        (*edge_u, *edge_v) = (*edge_u * 1.3, *edge_v * 1.3);
+    }
+    let (_, [found, drawn]) = next(&scene, &set, &mut kept);
+    assert_eq!([found, drawn], [0.0, all]);
+}
+
+/// A caster that turns about its own middle is drawn again, and the picture is that of the
+/// frame by itself (`next` compares).
+#[test]
+fn maps_of_a_caster_that_turns_are_drawn_again() {
+    let mut scene = two_over_a_floor();
+    let set = ["map-size=32", "directions=64"];
+    let mut kept = KeptPictures::default();
+    let (first, [_, all]) = next(&scene, &set, &mut kept);
+    // A quarter turn about the upright axis through its middle.
+    let plate = &scene.objects[1].mesh;
+    let turn = |p: &[f32; 3]| [0.3 + p[2], p[1], 0.3 - p[0]];
+    let positions = plate.positions().iter().map(turn).collect();
+    let turned = Mesh::new(positions, plate.triangles().to_vec(), Shading::Flat);
+    scene.objects[1].mesh = turned.unwrap().into();
+    let (second, [found, drawn]) = next(&scene, &set, &mut kept);
+    assert!(drawn > 0.0 && found + drawn == all, "{found} {drawn} {all}");
+    assert_ne!(first.visibility_hash(), second.visibility_hash());
 }
 
 /// A map is known by its occluders' triangles too: of the plate between the same corners

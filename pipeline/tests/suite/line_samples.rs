@@ -13,9 +13,13 @@ use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::truth::metrics::visibility::VisibilityError;
 use gnomon_pipeline::truth::oracle::area::VisibilityImage;
 use gnomon_pipeline::truth::oracle::surfaces::Surfaces;
+use gnomon_pipeline::world::light::Light;
 use gnomon_pipeline::world::light::{ConvexPolygon, HardLight, LightShape};
 use gnomon_pipeline::world::light_image::LightImage;
+use gnomon_pipeline::world::mesh::{Mesh, Shading};
 use gnomon_pipeline::world::scene::Scene;
+use gnomon_pipeline::world::scene::{Camera, Material, Object};
+use gnomon_pipeline::world::shape;
 
 const NAME: &str = "line-sampled-shadow-volumes";
 const SIZE: [u32; 2] = [96, 72];
@@ -307,4 +311,80 @@ fn the_count_before_the_centre_is_right_in_hard_cases() {
         let error = with_lines(&scene, &truth, 32);
         assert!(error < 4e-3, "{name} {error}");
     }
+}
+
+/// Edges of one facet are contours from everywhere: a sheet's shadow is that of the truth,
+/// whichever way round its triangles are, from above and from below.
+#[test]
+fn sheets_have_the_shadow_of_the_truth() {
+    let corners = [
+        [-0.6, 1.0, -0.5],
+        [0.7, 1.0, -0.4],
+        [0.6, 1.0, 0.5],
+        [-0.5, 1.0, 0.4],
+    ];
+    let floor = shape::plane(6.0, 0.0).into_mesh(Shading::Flat).unwrap();
+    for triangles in [
+        [[0, 2, 1], [0, 3, 2]],
+        [[0, 1, 2], [0, 2, 3]],
+        [[0, 2, 1], [0, 2, 3]],
+    ] {
+        let sheet = Mesh::new(corners.to_vec(), triangles.to_vec(), Shading::Flat).unwrap();
+        let floor = Object::new("floor", floor.clone(), Material::matt([0.6; 3]));
+        let sheet = Object::new("sheet", sheet, Material::matt([0.8; 3]));
+        let scene = Scene::new(
+            Camera::look_at([0.6, 2.9, 4.1], [0.0, 0.6, 0.0]),
+            vec![Light::horizontal_square(DVec3::new(0.4, 3.5, 0.2), 0.8)],
+            vec![floor.receiver_only(), sheet],
+        );
+        let truth = truth(&scene);
+        let [rmse, _] = error(&scene, &truth, &["lines=32", "open-casters=generalised"]);
+        assert!(rmse < 3e-3, "{triangles:?}: {rmse}");
+    }
+}
+
+/// A light that the plane of a caster's own facet cuts, near to it, seen from afar: neither
+/// the facet nor its edges hide it, though positions are rounded by as much as they are far.
+#[test]
+fn own_planes_hide_nothing_wherever_the_eye_is() {
+    let solid = |name: &str, centre: DVec3, size: DVec3| {
+        let mesh = shape::cuboid(centre, size)
+            .into_mesh(Shading::Flat)
+            .unwrap();
+        Object::new(name, mesh, Material::matt([0.7; 3]))
+    };
+    let mut errors = Vec::new();
+    for away in [1.0, 40.0, 160.0] {
+        let eye = DVec3::new(0.4, 3.0, 2.5) * away;
+        let mut camera = Camera::look_at(eye.to_array(), [0.0, 0.0, 0.0]);
+        camera.near *= away;
+        camera.fov_y_degrees /= away;
+        let light = Light {
+            shape: LightShape::Rectangle {
+                centre: DVec3::new(-1.1, 0.1, 0.2),
+                edge_u: DVec3::new(0.0, 0.8, 0.1),
+                edge_v: DVec3::new(0.1, 0.0, 0.9),
+            },
+            colour: [1.0; 3],
+        };
+        let scene = Scene::new(
+            camera,
+            vec![light],
+            vec![
+                solid(
+                    "table",
+                    DVec3::new(0.3, -0.5, 0.0),
+                    DVec3::new(2.0, 1.0, 2.0),
+                ),
+                solid(
+                    "block",
+                    DVec3::new(0.0, 0.15, 0.1),
+                    DVec3::new(0.3, 0.3, 0.4),
+                ),
+            ],
+        );
+        let truth = truth(&scene);
+        errors.push(error(&scene, &truth, &["lines=48"]));
+    }
+    assert!(errors.iter().all(|[rmse, _]| *rmse < 4e-3), "{errors:?}");
 }

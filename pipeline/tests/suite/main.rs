@@ -38,6 +38,7 @@ mod penumbra_wedges;
 mod planar;
 mod polygon_lights;
 mod ray_traced;
+mod same_texel;
 mod settings_effect;
 mod shader_identity;
 mod shadow_maps;

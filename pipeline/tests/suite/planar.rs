@@ -93,6 +93,46 @@ fn floors_of_built_in_scenes_against_the_truth() {
     }
 }
 
+/// Receivers that are not in their own masks, in whole scenes: nearer to the truth than with
+/// one mask of everything, but where no piece is convex (`peer-c`), which changes nothing.
+#[test]
+fn masks_without_their_receivers_are_nearer_to_the_truth() {
+    let mut failed = Vec::new();
+    for (name, bound, gain) in [
+        ("spheres", 0.053, 0.7),
+        ("cylinder", 0.036, 0.7),
+        ("two-box", 0.028, 0.7),
+        ("peer-a", 0.034, 0.6),
+        ("peer-b", 0.075, 0.75),
+        ("peer-c", 0.04, 1.0),
+        ("overlap", 0.07, 0.97),
+        ("creature", 0.061, 0.95),
+        ("columns", 0.15, 0.9),
+        ("demo", 0.105, 0.8),
+    ] {
+        let scene = scene(name);
+        let truth = truth(&scene);
+        let of = |set: &str| error("soler-sillion", &scene, &truth, &["horizon=on", set]).rmse;
+        let [all, each] = ["groups=all", "groups=each"].map(of);
+        println!("{name}: {each:.4} of {all:.4}");
+        if each >= bound || each > gain * all {
+            failed.push(format!("{name}: {each} of {all}"));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?}");
+}
+
+/// Objects that stay in their own masks, being not convex, are told of.
+#[test]
+fn receivers_in_their_own_masks_are_told_of() {
+    let told = |name: &str, set: &[&str]| {
+        let warnings = by("soler-sillion", &scene(name), set).warnings;
+        warnings.iter().any(|w| w.code == "receivers-that-cast")
+    };
+    assert!(told("peer-c", &[]) && told("peer-c", &["groups=all"]));
+    assert!(!told("spheres", &[]) && told("spheres", &["groups=all"]));
+}
+
 /// T: counts are whole numbers, so that there are N + 1 levels at most.
 #[test]
 fn projections_have_as_many_levels_as_points() {

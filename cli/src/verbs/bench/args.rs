@@ -27,7 +27,12 @@ pub(crate) struct BenchArgs {
     pub(crate) scenes: Vec<String>,
     /// Techniques, each with a grid of settings if need be: NAME:KEY=V1|V2:...; all for
     /// each one's defaults [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(
+        long,
+        alias = "technique",
+        value_name = "NAME,...",
+        value_delimiter = ','
+    )]
     pub(crate) techniques: Vec<String>,
     /// Image sizes in pixels [default: 320x240]
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = parse_size)]
@@ -54,7 +59,13 @@ pub(crate) struct BenchArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) limit: Option<u32>,
     /// Folder for results, tables, plots and the page
-    #[arg(long, value_name = "DIR", default_value = "out/bench")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out",
+        value_name = "DIR",
+        default_value = "out/bench"
+    )]
     pub(crate) out_dir: PathBuf,
     /// Folder of the truth [default: oracle-cache in the other one]
     #[arg(long, value_name = "DIR")]
@@ -81,7 +92,7 @@ pub(crate) struct MergeArgs {
     #[arg(value_name = "DIR", required = true)]
     pub(crate) folders: Vec<PathBuf>,
     /// Folder for all results, tables, plots and the page
-    #[arg(long, value_name = "DIR")]
+    #[arg(short = 'o', long, alias = "out", value_name = "DIR")]
     pub(crate) out_dir: PathBuf,
     /// Print the JSON document on stdout, the summary on stderr
     #[arg(long)]

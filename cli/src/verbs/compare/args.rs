@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use gnomon_pipeline::measure::comparison::{ReferenceKind, UnknownReference};
 
-use crate::flags::{EnvArgs, GpuArgs, SceneArgs, parse_setting, parse_size, parse_time};
+use crate::flags::{EntryArg, EnvArgs, GpuArgs, SceneArgs, parse_entry, parse_size, parse_time};
 
 /// Flags of `compare`.
 #[derive(Debug, Args)]
@@ -15,8 +15,15 @@ pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
     /// Techniques (see `gnomon techniques`), each with settings of its own behind
-    /// colons if need be: NAME:KEY=VALUE:...
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', required_unless_present = "against", value_parser = parse_entry)]
+    /// colons if need be: NAME:KEY=VALUE:...; all for each one that takes the light
+    /// [default: shadow-volumes,pcss,convolution-soft-shadows,soft-shadow-volumes]
+    #[arg(
+        long,
+        alias = "technique",
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        value_parser = parse_entry
+    )]
     pub(crate) techniques: Vec<EntryArg>,
     /// Somebody else's image of the scene instead of techniques: visibility as .npy
     /// (height, width) or gray .png, or a picture as .npy (height, width, 3) or .exr of
@@ -39,7 +46,13 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
     /// Folder for the picture, SCENE-compare.png, and for the truth, oracle-cache/
-    #[arg(long, value_name = "DIR", default_value = "out")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out",
+        value_name = "DIR",
+        default_value = "out"
+    )]
     pub(crate) out_dir: PathBuf,
     /// Frames to time; the median is reported
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
@@ -50,6 +63,10 @@ pub(crate) struct CompareArgs {
     /// How to execute.
     #[command(flatten)]
     pub(crate) gpu: GpuArgs,
+    /// Also write the table for other programs, a line for each technique with all digits;
+    /// - for stdout
+    #[arg(long, value_name = "FILE.csv|-", conflicts_with = "env")]
+    pub(crate) csv: Option<PathBuf>,
     /// Print one JSON document on stdout, the table on stderr
     #[arg(long)]
     pub(crate) json: bool,
@@ -79,15 +96,6 @@ With --env: gnomon compare creature --env sky --lights 30,60 --techniques soft-s
 
 Exit codes: 0 fine, 2 bad input.";
 
-/// A technique to compare, with the settings that it was given.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct EntryArg {
-    /// The technique's name, unchecked.
-    pub(crate) technique: String,
-    /// Keys and values, unchecked.
-    pub(crate) settings: Vec<(String, String)>,
-}
-
 /// A setting of all entries of a technique.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct TechniqueSetting {
@@ -95,18 +103,6 @@ pub(crate) struct TechniqueSetting {
     pub(crate) technique: String,
     /// Key and value, unchecked.
     pub(crate) setting: (String, String),
-}
-
-pub(crate) fn parse_entry(text: &str) -> Result<EntryArg, String> {
-    let mut parts = text.split(':');
-    let technique = parts.next().unwrap_or_default().trim();
-    if technique.is_empty() {
-        return Err("expected NAME or NAME:KEY=VALUE:..., separated by commas".to_owned());
-    }
-    Ok(EntryArg {
-        technique: technique.to_owned(),
-        settings: parts.map(parse_setting).collect::<Result<_, _>>()?,
-    })
 }
 
 fn parse_technique_setting(text: &str) -> Result<TechniqueSetting, String> {
@@ -132,16 +128,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_have_settings_of_their_own() {
-        let entry = parse_entry("a:k=1:l=x=y").unwrap();
-        let pair = |k: &str, v: &str| (k.to_owned(), v.to_owned());
-        assert_eq!(entry.technique, "a");
-        assert_eq!(entry.settings, [pair("k", "1"), pair("l", "x=y")]);
-        assert!(parse_entry("").is_err() && parse_entry("a:b").is_err());
+    fn settings_of_all_entries_name_a_technique() {
         let all = parse_technique_setting("a-b.k=1.5").unwrap();
         assert_eq!(
             (all.technique, all.setting),
-            ("a-b".to_owned(), pair("k", "1.5"))
+            ("a-b".to_owned(), ("k".to_owned(), "1.5".to_owned()))
         );
         for bad in ["k=1", "a.k", ".k=1", "a.=1"] {
             let message = parse_technique_setting(bad).unwrap_err();

@@ -10,10 +10,10 @@ use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::light_image::LightImage;
 use gnomon_pipeline::world::scene::Scene;
 
-use super::args::{CompareArgs, EntryArg};
+use super::args::CompareArgs;
 use crate::error::CliError;
-use crate::flags::parameters;
-use crate::output::files;
+use crate::flags::{EntryArg, expand_all, parameters};
+use crate::output::{files, is_stdout};
 use crate::verbs;
 
 pub(super) const DEFAULT_SIZE: [u32; 2] = [640, 480];
@@ -24,6 +24,8 @@ pub(super) struct CompareJob {
     /// Number of the light that shines.
     pub(super) light: usize,
     pub(super) entries: Vec<Entry>,
+    /// Techniques that all would have been, which do not take the light.
+    pub(super) left_out: Vec<String>,
     /// What is on the light, to all of the techniques.
     pub(super) image: Option<LightImage>,
     pub(super) reference: ReferenceKind,
@@ -31,6 +33,8 @@ pub(super) struct CompareJob {
     pub(super) settings: RenderSettings,
     /// The picture.
     pub(super) out: PathBuf,
+    /// The table for other programs.
+    pub(super) csv: Option<PathBuf>,
 }
 
 /// A technique with parameters.
@@ -43,19 +47,22 @@ pub(super) struct Entry {
 
 impl CompareJob {
     pub(super) fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
-        let entries = parse_entries(args, registry, Some(args.light))?;
         let scene = args.scene.open()?.at(args.time)?;
         let (given, count) = (args.light, scene.lights.len());
-        if given >= count {
+        let Some(light) = scene.lights.get(given) else {
             return Err(CompareError::NoSuchLight { given, count }.into());
-        }
+        };
+        let takes = |t: &dyn Technique| t.capabilities().lights.contains(&light.shape);
+        let (entries, left_out) = parse_entries(args, registry, Some(args.light), &takes)?;
         let name = verbs::file_stem(&scene.name);
         let out = args.out_dir.join(format!("{name}-compare.png"));
         files::check_target(&out)?;
+        let csv = checked_csv(args)?;
         Ok(Self {
             light: args.light,
             image: common_image(&entries)?,
             entries,
+            left_out,
             reference: args.reference,
             cache: OracleCache::new(args.out_dir.join("oracle-cache")),
             settings: RenderSettings {
@@ -65,6 +72,7 @@ impl CompareJob {
             },
             scene,
             out,
+            csv,
         })
     }
 
@@ -100,19 +108,63 @@ impl CompareJob {
     }
 }
 
-/// The techniques to compare, under light number `light` alone or under all.
+/// Where the table goes, if it may; stdout has room for one document.
+fn checked_csv(args: &CompareArgs) -> Result<Option<PathBuf>, CliError> {
+    let Some(path) = args.csv.clone() else {
+        return Ok(None);
+    };
+    match (is_stdout(&path), args.json) {
+        (true, true) => Err(CliError::Flag {
+            flag: "--csv",
+            value: "-".to_owned(),
+            valid: "stdout is for the document of --json; give a file, or leave --json out"
+                .to_owned(),
+        }),
+        (true, false) => Ok(Some(path)),
+        (false, _) => files::check_extension("--csv", &path, "csv").map(|()| Some(path)),
+    }
+}
+
+/// The techniques to compare, under light number `light` alone or under all; and those that
+/// `all` leaves out, since they do not take the light.
 pub(super) fn parse_entries(
     args: &CompareArgs,
     registry: &Registry,
     light: Option<usize>,
-) -> Result<Vec<Entry>, CliError> {
-    let entries = args
-        .techniques
+    takes: &dyn Fn(&dyn Technique) -> bool,
+) -> Result<(Vec<Entry>, Vec<String>), CliError> {
+    let chosen = chosen(args, registry);
+    let by_name = |e: &EntryArg| args.techniques.contains(e) || args.techniques.is_empty();
+    let stays = |e: &EntryArg| by_name(e) || e.find(registry).is_ok_and(takes);
+    let (chosen, out): (Vec<_>, Vec<_>) = chosen.into_iter().partition(stays);
+    let entries = chosen
         .iter()
         .map(|arg| Entry::new(arg, args, registry, light));
     let entries = entries.collect::<Result<Vec<Entry>, CliError>>()?;
-    check_settings(args, registry)?;
-    Ok(entries)
+    check_settings(args, &chosen, registry)?;
+    Ok((entries, out.into_iter().map(|e| e.technique).collect()))
+}
+
+/// What is compared where nothing is asked for: hard, by a map, filtered, by geometry.
+const PRINCIPAL: [&str; 4] = [
+    "shadow-volumes",
+    "pcss",
+    "convolution-soft-shadows",
+    "soft-shadow-volumes",
+];
+
+/// The techniques that were asked for, or else the principal ones.
+fn chosen(args: &CompareArgs, registry: &Registry) -> Vec<EntryArg> {
+    if !args.techniques.is_empty() {
+        return expand_all(&args.techniques, registry);
+    }
+    let known = PRINCIPAL.map(EntryArg::plain).into_iter();
+    let known: Vec<_> = known.filter(|e| e.find(registry).is_ok()).collect();
+    match known.is_empty() {
+        // A registry of other crates' techniques alone.
+        true => (registry.all().iter().map(|t| EntryArg::plain(t.name()))).collect(),
+        false => known,
+    }
 }
 
 impl Entry {
@@ -122,7 +174,7 @@ impl Entry {
         registry: &Registry,
         light: Option<usize>,
     ) -> Result<Self, CliError> {
-        let technique = registry.find(&arg.technique)?;
+        let technique = arg.find(registry)?;
         let for_all = args
             .settings
             .iter()
@@ -186,14 +238,14 @@ fn common_image(entries: &[Entry]) -> Result<Option<LightImage>, CliError> {
 const LIGHT: &str = "light";
 
 /// Settings of techniques that are not compared would go unnoticed.
-fn check_settings(args: &CompareArgs, registry: &Registry) -> Result<(), CliError> {
+fn check_settings(
+    args: &CompareArgs,
+    chosen: &[EntryArg],
+    registry: &Registry,
+) -> Result<(), CliError> {
     for given in &args.settings {
         registry.find(&given.technique)?;
-        if !args
-            .techniques
-            .iter()
-            .any(|t| t.technique == given.technique)
-        {
+        if !chosen.iter().any(|t| t.technique == given.technique) {
             let (key, value) = &given.setting;
             return Err(CliError::Flag {
                 flag: "--set",

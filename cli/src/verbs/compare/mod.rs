@@ -2,6 +2,7 @@
 
 mod against;
 mod args;
+mod csv;
 mod document;
 mod environment;
 mod job;
@@ -11,5 +12,5 @@ mod pixels;
 mod run;
 mod table;
 
-pub(crate) use args::{CompareArgs, EntryArg, parse_entry};
+pub(crate) use args::CompareArgs;
 pub(crate) use run::run;

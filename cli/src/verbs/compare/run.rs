@@ -6,10 +6,11 @@ use super::args::CompareArgs;
 use super::document::CompareDocument;
 use super::job::CompareJob;
 use super::measure::{self, Comparison, Measured};
-use super::{against, environment, picture, table};
+use super::{against, csv, environment, picture, table};
 use crate::error::CliError;
 use crate::output::files::Batch;
 use crate::output::json::{FileDocument, worker_threads};
+use crate::output::png_text::{About, software, with_text};
 use crate::output::progress::Progress;
 use crate::output::{self, numbers, png};
 
@@ -26,17 +27,46 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     let found = measure::run(&job, &progress)?;
     progress.doing("writing the picture");
     let mut batch = Batch::default();
-    batch.stage(&job.out, &png::encode(&picture::draw(&job, &found)))?;
-    batch.commit()?;
-    drop(progress);
-    let files = [FileDocument {
+    let picture = png::encode(&picture::draw(&job, &found));
+    batch.stage(&job.out, &with_text(&picture, &about(&job)))?;
+    let mut files = vec![FileDocument {
         kind: "comparison",
         path: job.out.display().to_string(),
     }];
+    let table = job
+        .csv
+        .as_ref()
+        .map(|path| (path, csv::write(&found.measured)));
+    if let Some((path, table)) = table.as_ref().filter(|(path, _)| !output::is_stdout(path)) {
+        batch.stage(path, table.as_bytes())?;
+        files.push(FileDocument {
+            kind: "table",
+            path: path.display().to_string(),
+        });
+    }
+    batch.commit()?;
+    drop(progress);
+    let to_stdout = table.filter(|(path, _)| output::is_stdout(path));
+    if let Some((_, table)) = &to_stdout {
+        output::write_stdout(table.as_bytes())?;
+    }
     if args.json {
         output::print_json(&CompareDocument::new(&job, &found, &files))?;
     }
-    output::print_summary(&summarise(&job, &found, &files), args.json)
+    let is_taken = args.json || to_stdout.is_some();
+    output::print_summary(&summarise(&job, &found, &files), is_taken)
+}
+
+/// What the picture says of itself.
+fn about(job: &CompareJob) -> About {
+    let labels: Vec<&str> = job.entries.iter().map(|e| e.label.as_str()).collect();
+    vec![
+        software(),
+        ("Scene", job.scene.name.clone()),
+        ("Light", job.light.to_string()),
+        ("Reference", job.reference.name().to_owned()),
+        ("Techniques", labels.join(", ")),
+    ]
 }
 
 fn summarise(job: &CompareJob, found: &Comparison, files: &[FileDocument]) -> String {
@@ -83,6 +113,10 @@ fn describe_truth(found: &Comparison) -> String {
 fn collect_warnings(job: &CompareJob, found: &Comparison) -> Vec<String> {
     let cache = found.reference.warnings.iter().map(|w| w.to_string());
     let mut lines: Vec<String> = cache.collect();
+    if !job.left_out.is_empty() {
+        let names = job.left_out.join(", ");
+        lines.push(format!("light-not-taken: left out of all: {names}"));
+    }
     for (entry, Measured { done, .. }) in job.entries.iter().zip(&found.measured) {
         let of = |w: &gnomon_pipeline::technique::Warning| {
             format!("{}: {}: {}", entry.label, w.code, w.message)

@@ -10,7 +10,13 @@ use crate::flags::{GpuArgs, parse_size};
 #[derive(Debug, Args)]
 pub(crate) struct DemoArgs {
     /// Folder for pictures and the report
-    #[arg(long, value_name = "DIR", default_value = "out")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out",
+        value_name = "DIR",
+        default_value = "out"
+    )]
     pub(crate) out_dir: PathBuf,
     /// Image size in pixels
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "960x640")]

@@ -26,7 +26,7 @@ pub(crate) struct LightArgs {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_time, allow_negative_numbers = true)]
     pub(crate) time: f64,
     /// Draw the light as it is seen, with the edges before it
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE.png")]
     pub(crate) out: Option<PathBuf>,
     /// Print one JSON document on stdout
     #[arg(long)]

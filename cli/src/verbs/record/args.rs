@@ -14,7 +14,7 @@ pub(crate) struct RecordArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
     /// The trace to write
-    #[arg(long, value_name = "FILE.gnt")]
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE.gnt")]
     pub(crate) out: PathBuf,
     /// Leave block accesses out: the trace replays, but says nothing of traffic
     #[arg(long)]

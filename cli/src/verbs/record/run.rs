@@ -15,7 +15,7 @@ use crate::verbs::info::TraceDocument;
 /// Records what was asked for; the file appears whole or not at all.
 pub(crate) fn run(args: &RecordArgs, registry: &Registry) -> Result<(), CliError> {
     check_extension("--out", &args.out, "gnt")?;
-    let technique = registry.find(&args.frame.technique)?;
+    let technique = args.frame.technique.find(registry)?;
     let params = args.frame.params(technique)?;
     args.frame.check_light_fps(&params)?;
     let mut source = args.frame.source()?;

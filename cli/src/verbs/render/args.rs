@@ -14,9 +14,15 @@ pub(crate) struct RenderArgs {
     /// What to draw.
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
-    /// Picture to write [default: out/SCENE-TECHNIQUE.png]; with --frames the folder
-    /// of frame-0000.png and so on [default: out/SCENE-TECHNIQUE]
-    #[arg(long, value_name = "FILE.png|DIR")]
+    /// Picture to write, .png or .exr (linear light, 32-bit floats), or - for a PNG on stdout
+    /// [default: out/SCENE-TECHNIQUE.png, with the settings and the time that were given];
+    /// with --frames the folder of frame-0000.png and so on [default: out/SCENE-TECHNIQUE]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out-dir",
+        value_name = "FILE.png|.exr|-|DIR"
+    )]
     pub(crate) out: Option<PathBuf>,
     /// Also write visibility, 1 = fully lit, as a float32 array (height, width)
     #[arg(long, value_name = "FILE.npy")]

@@ -12,7 +12,7 @@ use gnomon_pipeline::techniques::Registry;
 use serde::Serialize;
 
 use super::args::RenderArgs;
-use super::job::{self, RenderJob, default_out};
+use super::job::{self, RenderJob, default_out, distinguished};
 use super::write::write;
 use crate::error::CliError;
 use crate::output;
@@ -43,7 +43,7 @@ struct FrameDocument {
 pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<(), CliError> {
     check(args)?;
     args.frame.check_times(count)?;
-    let technique = registry.find(&args.frame.technique)?;
+    let technique = args.frame.technique.find(registry)?;
     job::check_wedges(args, technique, registry)?;
     let params = args.frame.params(technique)?;
     args.frame.check_light_fps(&params)?;
@@ -100,14 +100,25 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
         });
     }
     match &args.out {
+        Some(out) if output::is_stdout(out) => Err(CliError::Flag {
+            flag: "--out",
+            value: "-".to_owned(),
+            valid: "stdout holds one picture; give a folder for --frames".to_owned(),
+        }),
         Some(out) => check_folder("--out", out),
         None => Ok(()),
     }
 }
 
 fn choose_folder(args: &RenderArgs, scene: &str) -> PathBuf {
-    let by_default = || default_out(scene, &args.frame.technique).with_extension("");
+    let by_default = || folder_of(default_out(scene, &distinguished(args)));
     args.out.clone().unwrap_or_else(by_default)
+}
+
+/// The folder that is called like a picture, without what makes that one.
+fn folder_of(picture: PathBuf) -> PathBuf {
+    let name = picture.to_string_lossy();
+    PathBuf::from(name.strip_suffix(".png").unwrap_or(&name))
 }
 
 fn row(frame: u32, time: f64, done: &Rendered) -> Vec<String> {
@@ -120,6 +131,25 @@ fn row(frame: u32, time: f64, done: &Rendered) -> Vec<String> {
         bytes,
         hash,
     ]
+}
+
+/// Pictures of an earlier, longer animation in the folder: they would be played with this one.
+fn leftover(folder: &Path, count: usize) -> Option<String> {
+    let number = |name: &str| {
+        let digits = name.strip_prefix("frame-")?.strip_suffix(".png")?;
+        digits.parse::<usize>().ok().filter(|n| *n >= count)
+    };
+    let entries = std::fs::read_dir(folder).ok()?.flatten();
+    let names = entries.map(|e| e.file_name().to_string_lossy().into_owned());
+    let mut old: Vec<String> = names.filter(|n| number(n).is_some()).collect();
+    old.sort();
+    let (first, last) = (old.first()?, old.last()?);
+    Some(format!(
+        "leftover-frames: {} pictures of an earlier run, {first} to {last}, are still in {}; \
+         remove them before the frames are joined",
+        old.len(),
+        folder.display()
+    ))
 }
 
 /// The frames, and the warnings of the last one.
@@ -145,6 +175,9 @@ fn summarise(job: &RenderJob, done: &Rendered, files: &[FileDocument], table: &T
     }
     let folder = files.first().and_then(|f| Path::new(&f.path).parent());
     if let Some(folder) = folder {
+        if let Some(line) = leftover(folder, table.rows.len()) {
+            text += &format!("warning: {line}\n");
+        }
         let count = table.rows.len() * files.len();
         text += &format!("wrote {count} files to {}\n", folder.display());
     }

@@ -11,8 +11,8 @@ use gnomon_pipeline::world::scene::Scene;
 
 use super::args::{Per, RenderArgs};
 use crate::error::CliError;
-use crate::output::files;
 use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
+use crate::output::{files, is_stdout};
 use crate::overlay::{self, OverlayKind};
 use crate::verbs;
 
@@ -29,12 +29,10 @@ pub(super) struct RenderJob {
 
 impl RenderJob {
     pub(super) fn new(args: &RenderArgs, registry: &Registry) -> Result<Self, CliError> {
-        let technique = registry.find(&args.frame.technique)?;
+        let technique = args.frame.technique.find(registry)?;
         check_wedges(args, technique, registry)?;
         let params = args.frame.params(technique)?;
-        if let Some(out) = &args.out {
-            files::check_extension("--out", out, "png")?;
-        }
+        check_out(args)?;
         if let Some(visibility) = &args.visibility {
             files::check_extension("--visibility", visibility, "npy")?;
         }
@@ -52,8 +50,10 @@ impl RenderJob {
     ) -> Result<Self, CliError> {
         check_overlays(args, &scene)?;
         let size = args.frame.size_of(&scene);
-        let out = out.unwrap_or_else(|| default_out(&scene.name, technique.name()));
-        files::check_target(&out)?;
+        let out = out.unwrap_or_else(|| default_out(&scene.name, &distinguished(args)));
+        if !is_stdout(&out) {
+            files::check_target(&out)?;
+        }
         Ok(Self {
             scene,
             technique,
@@ -127,6 +127,45 @@ impl RenderJob {
         )?))
     }
 }
+
+/// Refuses a picture of another kind, and stdout where more than the picture goes there or
+/// beside it.
+fn check_out(args: &RenderArgs) -> Result<(), CliError> {
+    let Some(out) = &args.out else {
+        return Ok(());
+    };
+    if !is_stdout(out) {
+        return files::check_extensions("--out", out, &["png", "exr"]);
+    }
+    let beside = match () {
+        () if args.json => "--json prints there",
+        () if !args.overlay.is_empty() => "overlays are written beside the picture",
+        () if args.show.iter().any(|s| !s.has_file()) => "buffers are written beside the picture",
+        () => return Ok(()),
+    };
+    Err(CliError::Flag {
+        flag: "--out",
+        value: "-".to_owned(),
+        valid: format!("it is stdout, but {beside}; give a file name"),
+    })
+}
+
+/// The technique with what was given of its settings, and the time, for the name of a file.
+pub(super) fn distinguished(args: &RenderArgs) -> String {
+    let frame = &args.frame;
+    let settings = frame.technique.settings.iter().chain(&frame.settings);
+    let settings = settings.map(|(key, value)| format!("-{key}-{value}"));
+    let time = (frame.time != 0.0).then(|| format!("-time-{}", frame.time));
+    let name: String = settings.chain(time).collect();
+    let short: String = verbs::file_stem(&name)
+        .chars()
+        .take(MOST_OF_A_NAME)
+        .collect();
+    frame.technique.technique.clone() + &short
+}
+
+/// Characters of settings in a file's name.
+const MOST_OF_A_NAME: usize = 80;
 
 /// Refuses an overlay of what the scene does not have.
 fn check_overlays(args: &RenderArgs, scene: &Scene) -> Result<(), CliError> {

@@ -46,7 +46,8 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
         text += &format!("\n{}", baseline.tell(&differences));
         same = differences.is_empty();
     }
-    output::print_summary(&text, args.json)?;
+    let is_taken = args.json || output::is_stdout(&job.out);
+    output::print_summary(&text, is_taken)?;
     if same { Ok(()) } else { Err(CliError::Differs) }
 }
 

@@ -10,8 +10,9 @@ use super::show::show;
 use crate::error::CliError;
 use crate::output::files::Batch;
 use crate::output::json::FileDocument;
+use crate::output::png_text::{About, software, with_text};
 use crate::output::progress::Progress;
-use crate::output::{npy, png};
+use crate::output::{is_stdout, npy, png, textures, write_stdout};
 use crate::overlay;
 
 /// Draws and writes everything that was asked for, or nothing.
@@ -32,7 +33,17 @@ pub(super) fn write(
     };
     progress.doing("writing");
     png::check_room(done.size)?;
-    stage("render", &job.out, &png::encode(&overlay::picture(done)))?;
+    let about = about(job, done);
+    let told = |picture| with_text(&png::encode(&picture), &about);
+    let to_stdout = is_stdout(&job.out);
+    let is_exr = (job.out.extension()).is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let picture = match is_exr {
+        true => linear(done),
+        false => told(overlay::picture(done)),
+    };
+    if !to_stdout {
+        stage("render", &job.out, &picture)?;
+    }
     if let Some(path) = &args.visibility {
         stage(
             "visibility",
@@ -54,11 +65,7 @@ pub(super) fn write(
     };
     for (kind, path) in &job.overlays {
         progress.doing(format!("drawing {}", kind.name()));
-        stage(
-            kind.name(),
-            path,
-            &png::encode(&overlay::draw(*kind, &source)),
-        )?;
+        stage(kind.name(), path, &told(overlay::draw(*kind, &source)))?;
         progress.step();
     }
     if !args.show.is_empty() {
@@ -70,5 +77,34 @@ pub(super) fn write(
         }
     }
     batch.commit()?;
+    if to_stdout {
+        write_stdout(&picture)?;
+    }
     Ok(written)
+}
+
+/// What pictures say of themselves: nothing of the machine, so that equal ones are equal
+/// files.
+fn about(job: &RenderJob, done: &Rendered) -> About {
+    let params = job
+        .params
+        .iter()
+        .map(|(key, value)| format!("{key}={value}"));
+    vec![
+        software(),
+        ("Scene", job.scene.name.clone()),
+        ("Technique", job.technique.name().to_owned()),
+        ("Parameters", params.collect::<Vec<_>>().join(" ")),
+        ("Color hash", done.color_hash()),
+        ("Visibility hash", done.visibility_hash()),
+    ]
+}
+
+/// Linear light in 32-bit floats.
+fn linear(done: &Rendered) -> Vec<u8> {
+    textures::exr(&textures::Values {
+        size: done.size,
+        channels: 3,
+        numbers: done.color.iter().flatten().map(|c| f64::from(*c)).collect(),
+    })
 }

@@ -19,7 +19,7 @@ pub(crate) struct ReplayArgs {
     #[arg(long)]
     pub(crate) deep: bool,
     /// Write the picture of the frame; of several, say which with --frame
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE.png")]
     pub(crate) out: Option<PathBuf>,
     /// How to execute.
     #[command(flatten)]

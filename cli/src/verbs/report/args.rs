@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::flags::{GpuArgs, SceneArgs, parse_size, parse_time};
-use crate::verbs::compare::{EntryArg, parse_entry};
+use crate::flags::{EntryArg, GpuArgs, SceneArgs, parse_entry, parse_size, parse_time};
 
 /// Flags of `report`.
 #[derive(Debug, Args)]
@@ -14,10 +13,16 @@ pub(crate) struct ReportArgs {
     /// The scene, or the .gnt file of a recorded frame.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// Technique, with settings behind colons if need be: NAME:KEY=VALUE:...; may be
-    /// repeated, and is then also measured against the exact soft shadow [default:
+    /// Techniques, each with settings behind colons if need be: NAME:KEY=VALUE:...; may
+    /// be repeated; several are then also measured against the exact soft shadow [default:
     /// shadow-volumes]
-    #[arg(long = "technique", value_name = "NAME", value_parser = parse_entry)]
+    #[arg(
+        long = "technique",
+        alias = "techniques",
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        value_parser = parse_entry
+    )]
     pub(crate) techniques: Vec<EntryArg>,
     /// Frame of a trace, the scene being a .gnt file
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -26,7 +31,7 @@ pub(crate) struct ReportArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
     /// The page
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE.html")]
     pub(crate) out: PathBuf,
     /// Also show what happened to a pixel, column and row from the top left; may be
     /// repeated

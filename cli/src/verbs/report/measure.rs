@@ -20,9 +20,8 @@ use gnomon_traces::report::FrameReport;
 use super::args::ReportArgs;
 use crate::draw::Picture;
 use crate::error::CliError;
-use crate::flags::parameters;
+use crate::flags::{EntryArg, expand_all, parameters};
 use crate::overlay;
-use crate::verbs::compare::EntryArg;
 
 /// A frame and what the page shows of it.
 pub(super) struct Subject {
@@ -66,16 +65,12 @@ pub(super) struct Entry {
 
 /// The techniques that were asked for.
 pub(super) fn entries(args: &ReportArgs, registry: &Registry) -> Result<Vec<Entry>, CliError> {
-    let default = EntryArg {
-        technique: "shadow-volumes".to_owned(),
-        settings: Vec::new(),
-    };
     let given = match args.techniques.is_empty() {
-        true => vec![default],
-        false => args.techniques.clone(),
+        true => vec![EntryArg::plain("shadow-volumes")],
+        false => expand_all(&args.techniques, registry),
     };
     let entry = |arg: EntryArg| {
-        let technique = registry.find(&arg.technique)?;
+        let technique = arg.find(registry)?;
         let settings = arg.settings.iter().map(|(k, v)| format!(" {k}={v}"));
         Ok(Entry {
             label: std::iter::once(arg.technique.clone())

@@ -19,7 +19,13 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "512x384")]
     pub(crate) size: [u32; 2],
     /// Folder for plots, CLAIM.svg and CLAIM.png, and for the truth, oracle-cache/
-    #[arg(long, value_name = "DIR", default_value = "out")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out",
+        value_name = "DIR",
+        default_value = "out"
+    )]
     pub(crate) out_dir: PathBuf,
     /// Frames to time where times are compared; the least time counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1_000))]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::flags::{GpuArgs, parse_size};
+use crate::flags::{EntryArg, GpuArgs, parse_entry, parse_size};
 
 /// Flags of `stress`.
 #[derive(Debug, Args)]
@@ -21,9 +21,10 @@ pub(crate) struct StressArgs {
         long,
         alias = "techniques",
         value_name = "NAME,...",
-        value_delimiter = ','
+        value_delimiter = ',',
+        value_parser = parse_entry
     )]
-    pub(crate) technique: Vec<String>,
+    pub(crate) technique: Vec<EntryArg>,
     /// What is varied: scale, offset, slivers, pieces, near, near-d32f, light-size,
     /// light-down, light-near, eye-near, eye-shadow [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
@@ -35,7 +36,13 @@ pub(crate) struct StressArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "120x80")]
     pub(crate) size: [u32; 2],
     /// Folder for stress.md, stress.csv, stress.json and a plot for each axis
-    #[arg(long, value_name = "DIR", default_value = "out/stress")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out",
+        value_name = "DIR",
+        default_value = "out/stress"
+    )]
     pub(crate) out_dir: PathBuf,
     /// How to execute.
     #[command(flatten)]

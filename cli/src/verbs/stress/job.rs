@@ -9,6 +9,7 @@ use gnomon_pipeline::world::scene::{Scene, SceneSource};
 
 use super::args::StressArgs;
 use crate::error::CliError;
+use crate::flags::{EntryArg, expand_all};
 use crate::output::files;
 
 /// Measurements, ready to be made.
@@ -63,16 +64,10 @@ fn axes(names: &[String]) -> Result<Vec<Axis>, CliError> {
     found.collect()
 }
 
-fn candidates(names: &[String], registry: &Registry) -> Result<Vec<Candidate>, CliError> {
-    if names.is_empty() {
-        let all = registry.all().iter().map(|t| Candidate::new(*t, &[]));
-        return Ok(all.collect::<Result<_, _>>()?);
-    }
-    let parse = |given: &String| {
-        let mut parts = given.split(':').map(str::trim);
-        let technique = registry.find(parts.next().unwrap_or_default())?;
-        let settings: Vec<String> = parts.map(str::to_owned).collect();
-        Ok(Candidate::new(technique, &settings)?)
-    };
-    names.iter().map(parse).collect()
+fn candidates(given: &[EntryArg], registry: &Registry) -> Result<Vec<Candidate>, CliError> {
+    let all = [EntryArg::plain("all")];
+    let given = if given.is_empty() { &all } else { given };
+    let entries = expand_all(given, registry);
+    let parse = |e: &EntryArg| Ok(Candidate::new(e.find(registry)?, &e.written())?);
+    entries.iter().map(parse).collect()
 }

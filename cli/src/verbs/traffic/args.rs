@@ -27,8 +27,8 @@ pub(crate) struct TrafficArgs {
     /// Judge tilers also with passes merged, as far as their attachments allow
     #[arg(long)]
     pub(crate) per_pass_merged: bool,
-    /// Write rows (.csv), or dram bytes of tiles or pixels of one profile (.npy)
-    #[arg(long, value_name = "FILE")]
+    /// Write rows (.csv, or - for stdout), or dram bytes of tiles or pixels of one profile (.npy)
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print one JSON document on stdout
     #[arg(long)]

@@ -23,7 +23,10 @@ pub(crate) fn run(args: &TrafficArgs) -> Result<(), CliError> {
     let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
     let runs = runs(args, &profiles);
     let out = args.out.as_ref();
-    let kind = out
+    let to_stdout = out.is_some_and(|path| output::is_stdout(path));
+    check_stdout(args, to_stdout)?;
+    let file_out = out.filter(|_| !to_stdout);
+    let kind = file_out
         .map(|path| kind(path, args.by, runs.len()))
         .transpose()?;
     let file = TraceFile::open(&args.trace)?;
@@ -42,7 +45,22 @@ pub(crate) fn run(args: &TrafficArgs) -> Result<(), CliError> {
         }
         batch.commit()?;
     }
+    if to_stdout {
+        return output::write_stdout(csv(&documents).as_bytes());
+    }
     print(args, &documents)
+}
+
+/// Stdout has room for one document.
+fn check_stdout(args: &TrafficArgs, to_stdout: bool) -> Result<(), CliError> {
+    if !(to_stdout && args.json) {
+        return Ok(());
+    }
+    Err(CliError::Flag {
+        flag: "--out",
+        value: "-".to_owned(),
+        valid: "stdout is for the document of --json; give a file, or leave --json out".to_owned(),
+    })
 }
 
 fn print(args: &TrafficArgs, documents: &[TrafficDocument]) -> Result<(), CliError> {

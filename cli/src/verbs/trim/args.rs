@@ -26,7 +26,7 @@ pub(crate) struct TrimArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) frame: usize,
     /// The trace to write
-    #[arg(long, value_name = "FILE.gnt")]
+    #[arg(short = 'o', long, alias = "out-dir", value_name = "FILE.gnt")]
     pub(crate) out: PathBuf,
     /// How to execute.
     #[command(flatten)]

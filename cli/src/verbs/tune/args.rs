@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::flags::{GpuArgs, SceneArgs, parse_rate, parse_size, parse_time};
+use crate::flags::{EntryArg, GpuArgs, SceneArgs, parse_entry, parse_rate, parse_size, parse_time};
 
 /// Flags of `tune`.
 #[derive(Debug, Args)]
@@ -23,9 +23,16 @@ pub(crate) struct TuneArgs {
     /// Keep bytes read and written by a frame at or below this
     #[arg(long, value_name = "B", group = "budget", value_parser = parse_limit)]
     pub(crate) max_bytes: Option<f64>,
-    /// Techniques that may be chosen [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    pub(crate) techniques: Vec<String>,
+    /// Techniques that may be chosen, each with settings that stay if need be:
+    /// NAME:KEY=VALUE:... [default: all]
+    #[arg(
+        long,
+        alias = "technique",
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        value_parser = parse_entry
+    )]
+    pub(crate) techniques: Vec<EntryArg>,
     /// The light that shines, by its number; the others are off
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) light: usize,
@@ -42,7 +49,13 @@ pub(crate) struct TuneArgs {
     #[arg(long, value_name = "F", value_parser = parse_rate, default_value_t = 24.0)]
     pub(crate) fps: f64,
     /// Folder for the truth, oracle-cache/
-    #[arg(long, value_name = "DIR", default_value = "out")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out",
+        value_name = "DIR",
+        default_value = "out"
+    )]
     pub(crate) out_dir: PathBuf,
     /// How to execute.
     #[command(flatten)]

@@ -13,6 +13,10 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
+    fn sets(&self, key: &str) -> bool {
+        self.settings.iter().any(|(k, _)| k == key)
+    }
+
     /// Technique and settings.
     pub(super) fn label(&self) -> String {
         let settings = self.settings.iter().map(|(k, v)| format!(" {k}={v}"));
@@ -32,23 +36,24 @@ const NOT_TUNED: [&str; 8] = [
     "seed",
 ];
 
-/// Each technique at its defaults, and with each parameter by itself at other values.
-pub(super) fn stars(techniques: &[&'static dyn Technique]) -> Vec<Candidate> {
-    techniques.iter().flat_map(|t| star(*t)).collect()
+/// Each technique as it was given, and with each of its other parameters by itself at other
+/// values.
+pub(super) fn stars(techniques: &[Candidate]) -> Vec<Candidate> {
+    techniques.iter().flat_map(star).collect()
 }
 
-fn star(technique: &'static dyn Technique) -> Vec<Candidate> {
-    let with = |settings| Candidate {
-        technique,
-        settings,
+fn star(given: &Candidate) -> Vec<Candidate> {
+    let with = |name: &str, value: String| {
+        let mut own = given.clone();
+        own.settings.push((name.to_owned(), value));
+        own
     };
-    let mut all = vec![with(Settings::new())];
-    for info in technique.params() {
-        if NOT_TUNED.contains(&info.name) {
-            continue;
+    let mut all = vec![given.clone()];
+    for info in given.technique.params() {
+        if !NOT_TUNED.contains(&info.name) && !given.sets(info.name) {
+            let values = values(info).into_iter();
+            all.extend(values.map(|v| with(info.name, v)));
         }
-        let values = values(info).into_iter();
-        all.extend(values.map(|v| with(vec![(info.name.to_owned(), v)])));
     }
     all
 }
@@ -59,18 +64,18 @@ pub(super) fn crosses(kept: &[Candidate]) -> Vec<Candidate> {
     for (k, a) in kept.iter().enumerate() {
         for b in &kept[k + 1..] {
             let same = a.technique.name() == b.technique.name();
-            let clash = b
-                .settings
-                .iter()
-                .any(|(key, _)| a.settings.iter().any(|s| s.0 == *key));
-            if !same || clash || a.settings.is_empty() || b.settings.is_empty() {
+            let fresh: Settings = (b.settings.iter())
+                .filter(|s| !a.settings.contains(s))
+                .cloned()
+                .collect();
+            let clash = fresh.iter().any(|(key, _)| a.sets(key));
+            let kept = a.settings.iter().any(|s| !b.settings.contains(s));
+            if !same || clash || fresh.is_empty() || !kept {
                 continue;
             }
-            let both = a.settings.iter().chain(&b.settings).cloned().collect();
-            all.push(Candidate {
-                technique: a.technique,
-                settings: both,
-            });
+            let mut both = a.clone();
+            both.settings.extend(fresh);
+            all.push(both);
         }
     }
     all
@@ -118,7 +123,12 @@ mod tests {
 
     #[test]
     fn every_candidate_is_taken_by_its_technique() {
-        let all = stars(techniques::all());
+        let plain = |t: &&'static dyn Technique| Candidate {
+            technique: *t,
+            settings: Settings::new(),
+        };
+        let plain: Vec<_> = techniques::all().iter().map(plain).collect();
+        let all = stars(&plain);
         assert!(all.len() > 4 * techniques::all().len());
         for candidate in &all {
             let given = candidate.settings.iter().map(|(k, v)| format!("{k}={v}"));
@@ -141,6 +151,24 @@ mod tests {
         assert!(of("ray-traced").contains(&"ray-traced samples=256".to_owned()));
         assert!(of("pcf").contains(&"pcf kernel=bicubic".to_owned()));
         assert_eq!(of("pcf")[0], "pcf");
+    }
+
+    /// What was given stays, whatever else is tried, alone or together.
+    #[test]
+    fn settings_that_were_given_stay() {
+        let pair = |k: &str, v: &str| (k.to_owned(), v.to_owned());
+        let given = Candidate {
+            technique: techniques::find("pcf").unwrap(),
+            settings: vec![pair("taps", "7")],
+        };
+        let all = stars(&[given]);
+        assert!(all.len() > 3);
+        let both = crosses(&all);
+        assert!(both.iter().any(|c| c.settings.len() == 3));
+        for candidate in all.iter().chain(&both) {
+            let taps = candidate.settings.iter().filter(|s| s.0 == "taps");
+            assert_eq!(taps.collect::<Vec<_>>(), [&pair("taps", "7")]);
+        }
     }
 
     #[test]

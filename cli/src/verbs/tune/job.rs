@@ -1,7 +1,7 @@
 //! What the command line asked for, checked.
 
 use gnomon_pipeline::measure::comparison::CompareError;
-use gnomon_pipeline::technique::Technique;
+use gnomon_pipeline::technique::Params;
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use gnomon_pipeline::world::scene::Scene;
@@ -9,7 +9,9 @@ use gnomon_raster::GpuConfig;
 
 use super::args::TuneArgs;
 use super::budget::Budget;
+use super::candidates::Candidate;
 use crate::error::CliError;
+use crate::flags::{EntryArg, expand_all};
 use crate::output::files;
 
 const DEFAULT_SIZE: [u32; 2] = [640, 480];
@@ -22,7 +24,8 @@ pub(super) struct TuneJob {
     pub(super) frames: Vec<Scene>,
     /// The time of the first frame.
     pub(super) time: f64,
-    pub(super) techniques: Vec<&'static dyn Technique>,
+    /// Techniques, with the settings that stay.
+    pub(super) techniques: Vec<Candidate>,
     pub(super) budget: Budget,
     pub(super) light: usize,
     pub(super) size: [u32; 2],
@@ -33,11 +36,7 @@ pub(super) struct TuneJob {
 impl TuneJob {
     pub(super) fn new(args: &TuneArgs, registry: &Registry) -> Result<Self, CliError> {
         files::check_folder("--out-dir", &args.out_dir)?;
-        let named = args.techniques.iter().map(|name| registry.find(name));
-        let mut techniques = named.collect::<Result<Vec<_>, _>>()?;
-        if techniques.is_empty() {
-            techniques = registry.all().to_vec();
-        }
+        let techniques = candidates(&args.techniques, registry)?;
         let frames = open_frames(args)?;
         let size = args.size.or(frames[0].size).unwrap_or(DEFAULT_SIZE);
         Ok(Self {
@@ -56,6 +55,24 @@ impl TuneJob {
             cache: OracleCache::new(args.out_dir.join("oracle-cache")),
         })
     }
+}
+
+/// The techniques that were asked for, or else all.
+fn candidates(given: &[EntryArg], registry: &Registry) -> Result<Vec<Candidate>, CliError> {
+    let all = [EntryArg::plain("all")];
+    let given = if given.is_empty() { &all } else { given };
+    let candidate = |entry: EntryArg| {
+        let technique = entry.find(registry)?;
+        Params::parse(technique, entry.written())?;
+        Ok(Candidate {
+            technique,
+            settings: entry.settings,
+        })
+    };
+    expand_all(given, registry)
+        .into_iter()
+        .map(candidate)
+        .collect()
 }
 
 /// At least one frame; each has the light.

@@ -33,7 +33,13 @@ pub(crate) struct WedgeArgs {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = parse_time, allow_negative_numbers = true)]
     pub(crate) time: f64,
     /// Draw the wedge with its halves and its hard shadow quad, and what it covers
-    #[arg(long, value_name = "FILE.png", requires = "edge")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out-dir",
+        value_name = "FILE.png",
+        requires = "edge"
+    )]
     pub(crate) out: Option<PathBuf>,
     /// Write what the edge adds at each pixel, as float64; NaN where no surface is
     #[arg(long, value_name = "FILE.npy", requires = "edge")]

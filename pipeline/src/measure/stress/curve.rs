@@ -203,3 +203,41 @@ fn compare(done: &Rendered, truth: &Reference) -> Result<Outcome, String> {
         warnings: done.warnings.iter().map(|w| w.code).collect(),
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::techniques;
+    use crate::world::scene::builtin;
+
+    /// Visibility below 0, above 1 and none on surfaces is counted; none where there is no
+    /// surface is as it should be.
+    #[test]
+    fn what_is_insane_is_counted() {
+        let scene = builtin::build("cylinder").unwrap();
+        let size = [32, 24];
+        let truth = Reference::new(&scene, 0, size, ReferenceKind::Exact, None, &|| ()).unwrap();
+        let technique = techniques::find("unshadowed").unwrap();
+        let settings = RenderSettings {
+            size,
+            ..RenderSettings::default()
+        };
+        let params = Params::defaults(technique);
+        let mut done = render(&scene, technique, &params, &settings).unwrap();
+        let insane = |done: &Rendered| match compare(done, &truth).unwrap() {
+            Outcome::Measured(m) => m.insane,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(insane(&done), 0);
+        assert!(done.visibility.iter().any(|v| v.is_nan()));
+        let surfaces = (0..done.depth.len()).filter(|k| done.depth[*k] < 1.0);
+        let places: Vec<usize> = surfaces.take(5).collect();
+        for (k, value) in places
+            .into_iter()
+            .zip([-0.1, 1.1, f32::NAN, f32::INFINITY, 1.0])
+        {
+            done.visibility[k] = value;
+        }
+        assert_eq!(insane(&done), 4);
+    }
+}

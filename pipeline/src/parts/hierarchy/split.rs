@@ -123,6 +123,49 @@ mod tests {
         assert_eq!(part[..2], [32, 31]);
     }
 
+    /// The cut that costs least is taken, wherever it is: between two heaps, not before the
+    /// lone triangle behind them.
+    #[test]
+    fn the_cheapest_cut_is_taken() {
+        let heap = |x: f32| (0..20).map(move |k| small(x + 0.01 * k as f32, 0.0));
+        let triangles: Vec<_> = heap(0.0)
+            .chain(heap(4.0))
+            .chain([small(9.0, 0.0)])
+            .collect();
+        let mut part: Vec<u32> = (0..41).collect();
+        assert_eq!(split(&triangles, &mut part), Some(20));
+        let mirrored: Vec<_> = triangles
+            .iter()
+            .map(|t| t.map(|[x, y, z]| [-x, y, z]))
+            .collect();
+        assert_eq!(split(&mirrored, &mut part), Some(21));
+    }
+
+    /// Heaps that lie along one axis alone are told apart there, whichever it is: nothing is cut
+    /// where centres are equal, and no side is ever empty.
+    #[test]
+    fn no_side_is_empty_where_only_one_axis_tells_apart() {
+        for axis in 0..3 {
+            let at = |k: u32| {
+                let mut corner = [0.0; 3];
+                corner[axis] = if k < 4 {
+                    0.1 * k as f32
+                } else {
+                    8.0 + 0.1 * k as f32
+                };
+                [0, 1, 2].map(|j| {
+                    let mut c = corner;
+                    c[(axis + 1) % 3] += 0.05 * j as f32;
+                    c
+                })
+            };
+            let triangles: Vec<_> = (0..11).map(at).collect();
+            let mut part: Vec<u32> = (0..11).collect();
+            assert_eq!(split(&triangles, &mut part), Some(4), "{axis}");
+            assert_eq!(part, (0..11).collect::<Vec<_>>());
+        }
+    }
+
     #[test]
     fn equal_centres_are_not_cut() {
         let triangles = [small(1.0, 2.0); 5];

@@ -205,6 +205,7 @@ impl Technique for BackprojectedMaps {
             maps: settings.maps,
             horizon: settings.horizon,
             margin: MARGIN,
+            apart: false,
         };
         let side = settings.maps.view.fitting.size;
         mapped.prefiltered_frame(

@@ -35,7 +35,9 @@ use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
 use crate::parts::horizon::HORIZON;
 use crate::parts::light_samples::Pattern;
-use crate::parts::maps::mapped::{LookUp, Looked, Mapped, Margin, Planes, Sources};
+use crate::parts::maps::mapped::{
+    LookUp, Looked, Mapped, Margin, Planes, Sources, receivers_in_their_own_pictures,
+};
 use crate::technique::{
     Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError, Warning,
 };
@@ -106,7 +108,7 @@ impl Technique for MomentMaps {
                 FrameSettings::PARAMS
             ),
             Self::Mask => param_list!(
-                &[settings::PLANE.info],
+                &[settings::PLANE.info, settings::GROUPS.info],
                 settings::MAPS,
                 &[HORIZON.info],
                 FrameSettings::PARAMS
@@ -138,6 +140,7 @@ impl Technique for MomentMaps {
             maps: settings.maps,
             horizon: settings.horizon,
             margin: self.margin(settings.kernel),
+            apart: settings.apart,
         };
         let side = settings.maps.view.fitting.size;
         let mut frame = mapped.prefiltered_frame(
@@ -146,7 +149,8 @@ impl Technique for MomentMaps {
             |textures, look_up| self.looked(&settings, textures, look_up),
         )?;
         if *self == Self::Mask {
-            frame.warnings.extend(receivers_that_cast(scene));
+            let warning = receivers_that_cast(scene, settings.apart);
+            frame.warnings.extend(warning);
         }
         Ok(frame)
     }
@@ -256,17 +260,24 @@ const BEYOND: [&str; 3] = [
 ];
 
 /// That objects are in the mask from which they take shadow; the method wants occluders and
-/// receivers apart.
-fn receivers_that_cast(scene: &Scene) -> Option<Warning> {
-    let objects = scene.objects.iter();
-    let count = objects.filter(|o| o.casts && o.receives).count();
+/// receivers apart, which convex ones can be.
+fn receivers_that_cast(scene: &Scene, apart: bool) -> Option<Warning> {
+    let both = scene.objects.iter().filter(|o| o.casts && o.receives);
+    let (count, what, hint) = match apart {
+        false => (both.count(), "", "set groups to each"),
+        true => (
+            receivers_in_their_own_pictures(scene),
+            " and are not convex",
+            "cut them into convex pieces",
+        ),
+    };
     (count > 0).then(|| Warning {
         code: "receivers-that-cast",
         count,
         message: format!(
-            "soler-sillion: {count} objects cast and receive: they are in the mask themselves, \
-             are lit where the light's centre sees them, and too dark round where it does not; \
-             set casts or receives to false, or use another technique"
+            "soler-sillion: {count} objects cast and receive{what}: they are in the mask \
+             themselves, are lit where the light's centre sees them, and too dark round where it \
+             does not; {hint}, set casts or receives to false, or use another technique"
         ),
     })
 }

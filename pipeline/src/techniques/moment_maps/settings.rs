@@ -92,6 +92,23 @@ pub(super) const PLANE: Param<PlaneAt> = Param::choice(
     "distance of the plane that stands for all occluders",
 );
 
+choices! {
+    /// Which occluders receivers have.
+    pub(super) enum Groups {
+        /// One mask of all that casts.
+        All = "all",
+        /// Each convex piece that casts has a mask of all others.
+        Each = "each",
+    }
+}
+
+pub(super) const GROUPS: Param<Groups> = Param::choice(
+    "groups",
+    Groups::Each.word(),
+    "all: one mask of all that casts, in which receivers that cast are themselves; each: a mask \
+     without itself for each convex piece that casts and receives",
+);
+
 /// Of those with a choice of kernels.
 pub(super) const FILTERED: &[ParamInfo] = &[WIDTH.info, TAPS.info, SEARCH.info];
 
@@ -142,6 +159,8 @@ pub(super) struct Settings {
     spread: Option<f64>,
     pub(super) cells: u32,
     pub(super) plane: PlaneAt,
+    /// Whether receivers have masks without themselves.
+    pub(super) apart: bool,
     pub(super) horizon: bool,
     pub(super) maps: MapSettings,
     pub(super) frame: FrameSettings,
@@ -171,6 +190,7 @@ impl Settings {
                 true => params.get(&PLANE)?,
                 false => PlaneAt::Middle,
             },
+            apart: has(MomentMaps::Mask) && params.get(&GROUPS)? == Groups::Each,
             horizon: params.get(&HORIZON)?,
             maps: MapSettings::read(params)?,
             frame: FrameSettings::read(params)?,

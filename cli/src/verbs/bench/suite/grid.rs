@@ -6,9 +6,8 @@ use gnomon_pipeline::techniques::Registry;
 use super::entry::{Entry, LIGHT, Settings, entry};
 use super::request::Given;
 use crate::error::CliError;
+use crate::flags::parse_entry;
 
-/// What stands for every technique at its defaults.
-const ALL: &str = "all";
 /// Most points of one grid.
 const MOST_POINTS: usize = 4096;
 
@@ -18,54 +17,39 @@ pub(super) fn expand(
     registry: &Registry,
     light: usize,
 ) -> Result<Vec<Entry>, CliError> {
-    let mut parts = given.value.split(':').map(str::trim);
-    let name = parts.next().unwrap_or_default();
-    if name.is_empty() {
-        return Err(given.wrong(format!(
-            "`{}` names no technique; expected NAME, NAME:KEY=V1|V2:... or {ALL}",
-            given.value
-        )));
+    let grid = parse_entry(&given.value).map_err(|e| given.wrong(e))?;
+    if grid.is_all() {
+        return every(given, registry, light);
     }
-    let axes = parts.map(|axis| parse_axis(given, axis));
+    let technique = grid.find(registry).map_err(|e| given.wrong(e))?;
+    let axes = grid.settings.iter().map(|axis| read_axis(given, axis));
     let axes = axes.collect::<Result<Vec<_>, _>>()?;
-    if name == ALL {
-        return every(given, registry, light, &axes);
-    }
-    let technique = registry.find(name).map_err(|e| given.wrong(e))?;
     let points = product(given, &axes)?;
     let entries = points.iter().map(|p| entry(technique, p, light));
     let entries: Result<_, TechniqueError> = entries.collect();
     entries.map_err(|e| given.wrong(e))
 }
 
-fn every(
-    given: &Given<String>,
-    registry: &Registry,
-    light: usize,
-    axes: &[(String, Vec<String>)],
-) -> Result<Vec<Entry>, CliError> {
-    if let Some((key, _)) = axes.first() {
-        return Err(given.wrong(format!(
-            "`{ALL}` takes no settings, and `{key}` was given; name the techniques"
-        )));
-    }
+fn every(given: &Given<String>, registry: &Registry, light: usize) -> Result<Vec<Entry>, CliError> {
     let entries = registry.all().iter().map(|t| entry(*t, &[], light));
     let entries: Result<_, TechniqueError> = entries.collect();
     entries.map_err(|e| given.wrong(e))
 }
 
-fn parse_axis(given: &Given<String>, text: &str) -> Result<(String, Vec<String>), CliError> {
-    let wrong = |problem: &str| given.wrong(format!("`{text}` of `{}`: {problem}", given.value));
-    let (key, values) = text
-        .split_once('=')
-        .ok_or_else(|| wrong("expected KEY=VALUE or KEY=V1|V2|..."))?;
-    if key.trim() == LIGHT {
-        return Err(wrong(
-            "one light is measured at a time: choose it for all with `light`",
-        ));
+/// The values of one setting: V1|V2|...
+fn read_axis(
+    given: &Given<String>,
+    (key, values): &(String, String),
+) -> Result<(String, Vec<String>), CliError> {
+    if key == LIGHT {
+        return Err(given.wrong(format!(
+            "`{key}={values}` of `{}`: one light is measured at a time: choose it for all with \
+             `light`",
+            given.value
+        )));
     }
     let values: Vec<String> = values.split('|').map(|v| v.trim().to_owned()).collect();
-    Ok((key.trim().to_owned(), values))
+    Ok((key.clone(), values))
 }
 
 /// Every combination, the last axis fastest.

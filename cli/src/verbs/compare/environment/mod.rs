@@ -86,7 +86,7 @@ pub(super) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
 
 impl EnvironmentJob {
     fn new(args: &CompareArgs, registry: &Registry) -> Result<Self, CliError> {
-        let entries = job::parse_entries(args, registry, None)?;
+        let (entries, _) = job::parse_entries(args, registry, None, &|_| true)?;
         let lights = if args.lights.is_empty() {
             &LIGHTS[..]
         } else {

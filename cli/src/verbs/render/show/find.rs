@@ -149,3 +149,78 @@ fn aspect(of: &TextureDescriptor, wanted: Option<Aspect>) -> Result<Aspect, Stri
         )),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use gnomon_raster::state::{DepthStencilState, PrimitiveState};
+    use gnomon_raster::{
+        ColorAttachment, Draw, Format, LoadOp, RenderPass, RenderPipeline, StoreOp,
+        TextureDimension,
+    };
+    use gnomon_shaders::transform::FullScreen;
+
+    use super::*;
+
+    /// A cube of three levels, and a pass with two draws.
+    fn recording() -> Recording {
+        let mut r = Recording::default();
+        let cube = TextureDescriptor {
+            mip_levels: 3,
+            dimension: TextureDimension::Cube,
+            ..TextureDescriptor::d2("cube", Format::Rgba8Unorm, 8, 8)
+        };
+        let texture = r.create(&cube).unwrap();
+        let pipeline = Arc::new(RenderPipeline {
+            label: "sky".into(),
+            vertex: FullScreen.stage(),
+            fragment: None,
+            primitive: PrimitiveState::default(),
+            depth_stencil: DepthStencilState::default(),
+            color_targets: Vec::new(),
+        });
+        let draw = |label: &str| Draw::vertices_only(label, &pipeline, 3);
+        r.list.passes = vec![RenderPass {
+            label: "sky".into(),
+            color: vec![ColorAttachment {
+                texture,
+                subresource: Subresource::default(),
+                load: LoadOp::Load,
+                store: StoreOp::Store,
+            }],
+            depth_stencil: None,
+            draws: vec![draw("first"), draw("second")],
+        }];
+        r
+    }
+
+    fn found(text: &str) -> Found {
+        let request = ShowRequest::parse(text).unwrap();
+        Found::new(&recording(), &request).unwrap()
+    }
+
+    #[test]
+    fn levels_and_layers_are_those_that_were_asked_for() {
+        for (text, mip, layer) in [
+            ("cube", 0, 0),
+            ("cube:2", 2, 0),
+            ("cube:1:5", 1, 5),
+            ("0:0:3", 0, 3),
+        ] {
+            assert_eq!(found(text).image, Subresource { mip, layer }, "{text}");
+        }
+    }
+
+    #[test]
+    fn moments_are_those_that_were_asked_for() {
+        for (text, until) in [
+            ("cube", Until::End),
+            ("cube@sky", Until::Pass(0)),
+            ("cube@sky/first", Until::Draw([0, 0])),
+            ("cube@0/1", Until::Draw([0, 1])),
+        ] {
+            assert_eq!(found(text).until, until, "{text}");
+        }
+    }
+}

@@ -64,6 +64,11 @@ impl ShowRequest {
         &self.text
     }
 
+    /// Whether a file was named.
+    pub(crate) fn has_file(&self) -> bool {
+        self.file.is_some()
+    }
+
     pub(super) fn kind(&self) -> Kind {
         self.file.as_deref().and_then(kind_of).unwrap_or(Kind::Png)
     }

@@ -117,7 +117,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Mean of the receivers' corners; `None` where nothing is seen.
-    pub(super) fn middle(&self) -> Option<DVec3> {
+    pub(crate) fn middle(&self) -> Option<DVec3> {
         let count = self.corners.len() as f64;
         let sum = self.corners.iter().sum::<DVec3>();
         (count > 0.0).then(|| sum / count)

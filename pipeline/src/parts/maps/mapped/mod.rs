@@ -4,6 +4,7 @@
 //! ("light view") and one that looks shadows up in it ("look-up"), one texture
 //! serving all views in turn; then the lit pass.
 
+mod groups;
 mod notes;
 mod settings;
 
@@ -23,6 +24,9 @@ pub(crate) use notes::{Hints, MapNotes, ViewsOfLight};
 pub(crate) use settings::{
     BIAS, FIT, MAP_SIZE, MapSettings, Margin, NEAR, Planes, SKIP, SLOPE_BIAS, VIEW, ViewSettings,
 };
+
+pub(crate) use groups::receivers_in_their_own_pictures;
+use groups::{Group, ReceiverGroups};
 
 use super::light_view::{
     CasterGeometry, Fitted, LightMap, Reads, Surroundings, ViewedLight, views_of,
@@ -50,6 +54,8 @@ pub(crate) struct LookUp<'a> {
     planes: bool,
     /// Of all the light's points, where it is looked at from several.
     share: f32,
+    /// w of the positions of receivers; `None`: all.
+    group: Option<f32>,
 }
 
 impl LookUp<'_> {
@@ -89,7 +95,10 @@ impl LookUp<'_> {
             bias: self.bias as f32,
             planes: self.planes.then(|| self.fitted.planes()),
             filter,
-            to: ShadowTo::Visibility,
+            to: match self.group {
+                Some(number) => ShadowTo::VisibilityOf(number),
+                None => ShadowTo::Visibility,
+            },
         }
     }
 
@@ -165,6 +174,8 @@ pub(crate) struct Mapped<'a> {
     /// Limit what facets see to what is before them.
     pub(crate) horizon: bool,
     pub(crate) margin: Margin,
+    /// Whether receivers have pictures without themselves.
+    pub(crate) apart: bool,
 }
 
 impl Mapped<'_> {
@@ -186,6 +197,9 @@ impl Mapped<'_> {
         looked: impl Fn(&T, &LookUp<'_>) -> Looked,
     ) -> Result<Frame, TechniqueError> {
         let around = Surroundings::new(self.scene, self.size);
+        let apart = self.apart.then(|| ReceiverGroups::new(self.scene));
+        let arounds = apart.as_ref().map(|g| g.around(self.size));
+        let groups = groups_of(self.scene, &around, arounds.as_deref());
         let frame = ShadowedFrame::new(self.scene, self.size, &self.frame)?;
         let frame = frame.with_horizon(self.horizon, false);
         let lights = frame.lights.clone();
@@ -196,9 +210,10 @@ impl Mapped<'_> {
             Planes::Far => s.are_far(&around),
             Planes::Always => true,
         };
-        let (mut frame, positions) = match sources.values().any(by_planes) {
-            true => frame.with_positions_and_planes()?,
-            false => frame.with_positions()?,
+        let (mut frame, positions) = match (&apart, sources.values().any(by_planes)) {
+            (Some(own), _) => frame.with_numbered_positions(&|object, t| own.number(object, t))?,
+            (None, true) => frame.with_positions_and_planes()?,
+            (None, false) => frame.with_positions()?,
         };
         let [width, height] = self.size;
         let desc = TextureDescriptor::d2("visibility", Format::R32Float, width, height);
@@ -216,6 +231,7 @@ impl Mapped<'_> {
             let one = OneLight {
                 view: &view,
                 around: &around,
+                groups: &groups,
                 maps: &self.maps,
                 map,
                 positions,
@@ -229,10 +245,39 @@ impl Mapped<'_> {
     }
 }
 
+/// Those that have pictures of their own, or all receivers as one.
+fn groups_of<'a>(
+    scene: &'a Scene,
+    around: &'a Surroundings<'a>,
+    apart: Option<&'a [(f32, &'a Scene, Surroundings<'a>)]>,
+) -> Vec<Group<'a>> {
+    let whole = Group {
+        number: None,
+        scene,
+        around,
+    };
+    let own = |(number, scene, around): &'a (f32, &'a Scene, Surroundings<'a>)| Group {
+        number: Some(*number),
+        scene,
+        around,
+    };
+    apart.map_or_else(|| vec![whole], |all| all.iter().map(own).collect())
+}
+
+/// A point of the light that looks at a group's occluders.
+struct LightOfGroup<'a> {
+    group: &'a Group<'a>,
+    light: &'a ViewedLight,
+    share: f32,
+    blend: ColorTargetState,
+}
+
 /// Views and look-ups of one light.
 struct OneLight<'a> {
     view: &'a View,
     around: &'a Surroundings<'a>,
+    /// What pictures are made for, one after the other.
+    groups: &'a [Group<'a>],
     maps: &'a MapSettings,
     map: LightMap,
     positions: Positions,
@@ -262,53 +307,90 @@ impl OneLight<'_> {
             return vec![look_up(LoadOp::Clear([1.0; 4]), None)];
         };
         let reference = first.reference(self.around);
-        let geometry = CasterGeometry::new(turn.scene, self.around, self.view, reference);
         let mut passes = Vec::new();
-        let mut load = LoadOp::Clear([1.0; 4]);
         let mut views = ViewsOfLight::default();
+        for group in self.groups {
+            let geometry = CasterGeometry::new(group.scene, group.around, self.view, reference);
+            for light in &sources.lights {
+                let light = LightOfGroup {
+                    group,
+                    light,
+                    share: 1.0 / sources.lights.len() as f32,
+                    blend: sources.blend,
+                };
+                self.add_views(
+                    &light,
+                    &geometry,
+                    (looked, &labels),
+                    &mut views,
+                    &mut passes,
+                );
+            }
+        }
+        if passes.is_empty() {
+            passes.push(look_up(LoadOp::Clear([1.0; 4]), None));
+        }
+        if self.groups.iter().any(|g| g.number.is_some()) {
+            views.add_figures(&[("receiver-groups", self.groups.len() as f64)]);
+        }
         let ViewSettings {
             views: kind,
             fitting,
         } = self.maps.view;
-        for light in &sources.lights {
-            let found = views_of(light, self.around, kind, &fitting);
-            views.missing += found.missing;
-            for fitted in found.views {
-                let bias = self.maps.bias(&fitted, self.margin);
-                views.add(&fitted, bias, fitting.size);
-                let picture = fitted.pass(
-                    labels("light view"),
-                    &geometry,
-                    self.view,
-                    &self.map,
-                    self.maps.skip,
-                );
-                passes.push(Pass::new(PassRole::LightView, picture));
-                let looked = looked(&LookUp {
-                    fitted: &fitted,
-                    light,
-                    around: self.around,
-                    depths: self.map.depth,
-                    label: &labels,
-                    mapping: fitted.mapping(self.view, fitting.size),
-                    bias,
-                    planes: self.planes,
-                    share: 1.0 / sources.lights.len() as f32,
-                });
-                views.add_figures(&looked.figures);
-                views.add_warnings(&looked.warnings);
-                let prefilter = looked.prefilter.into_iter();
-                passes.extend(prefilter.map(|p| Pass::new(PassRole::Prefilter, p)));
-                let draw = self.draw(looked.stage, looked.textures, sources.blend);
-                passes.push(look_up(load, Some(draw)));
-                load = LoadOp::Load;
-            }
-        }
-        if passes.is_empty() {
-            passes.push(look_up(load, None));
-        }
         notes.add(views, self.map.slope, Hints::of(kind, fitting.near));
         passes
+    }
+
+    /// Pictures of a group's occluders, and look-ups in them.
+    fn add_views(
+        &self,
+        of: &LightOfGroup<'_>,
+        geometry: &CasterGeometry,
+        (looked, labels): (&impl Fn(&LookUp<'_>) -> Looked, &dyn Fn(&str) -> String),
+        views: &mut ViewsOfLight,
+        passes: &mut Vec<Pass>,
+    ) {
+        let ViewSettings {
+            views: kind,
+            fitting,
+        } = self.maps.view;
+        let found = views_of(of.light, of.group.around, kind, &fitting);
+        views.missing += found.missing;
+        for fitted in found.views {
+            let bias = self.maps.bias(&fitted, self.margin);
+            views.add(&fitted, bias, fitting.size);
+            let picture = fitted.pass(
+                labels("light view"),
+                geometry,
+                self.view,
+                &self.map,
+                self.maps.skip,
+            );
+            // The first look-up clears.
+            let load = match passes.is_empty() {
+                true => LoadOp::Clear([1.0; 4]),
+                false => LoadOp::Load,
+            };
+            passes.push(Pass::new(PassRole::LightView, picture));
+            let looked = looked(&LookUp {
+                fitted: &fitted,
+                light: of.light,
+                around: of.group.around,
+                depths: self.map.depth,
+                label: labels,
+                mapping: fitted.mapping(self.view, fitting.size),
+                bias,
+                planes: self.planes,
+                share: of.share,
+                group: of.group.number,
+            });
+            views.add_figures(&looked.figures);
+            views.add_warnings(&looked.warnings);
+            let prefilter = looked.prefilter.into_iter();
+            passes.extend(prefilter.map(|p| Pass::new(PassRole::Prefilter, p)));
+            let draw = self.draw(looked.stage, looked.textures, of.blend);
+            passes.push(self.look_up(labels("look-up"), load, Some(draw)));
+        }
     }
 
     /// Looks shadows up in the picture; without a draw all is lit.

@@ -168,8 +168,25 @@ fn reporting_stays_in_the_command_line() {
         let found: Vec<_> = needs
             .iter()
             .filter(|n| REPORTING.contains(&n.as_str()))
+            // Models and exported scenes are JSON; see the next test.
+            .filter(|n| folder != "pipeline" || *n != "serde_json")
             .collect();
         assert!(found.is_empty(), "{folder} needs {found:?}");
+    }
+}
+
+/// glTF is JSON: the pipeline reads it in one place, and writes it in another.
+#[test]
+fn json_of_the_pipeline_is_that_of_models() {
+    let mut users = lines_with(&root().join("pipeline/src"), &["serde_json"]);
+    users.retain(|(path, _)| !is_for_tests(path));
+    assert!(!users.is_empty());
+    for (path, line) in users {
+        let inside = |part: &str| path.parent().is_some_and(|folder| folder.ends_with(part));
+        let only = inside("world/model/gltf") || inside("world/export");
+        // Checks the JSON Schema of scene files.
+        let checks = path.ends_with("scene/file/documented.rs");
+        assert!(only || checks, "{}: {line}", path.display());
     }
 }
 

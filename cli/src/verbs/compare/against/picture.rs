@@ -31,7 +31,7 @@ pub(super) fn draw(theirs: &Theirs, found: &Found) -> Picture {
         title: "The file minus the truth: blue is too dark, orange too bright".to_owned(),
         scale: diverging::labels(),
         swatches: vec![
-            Swatch::new(NOTHING, "no surface"),
+            Swatch::new(NOTHING, "no surface, or left out at an edge"),
             Swatch::new(OTHER, "no value in the file"),
         ],
         text_scale: Some(grid.text_scale()),

@@ -20,8 +20,6 @@ FAULTS = [
      "(both | slope.gt(zero))", "(both | slope.gt(zero) | Mask::splat(l, FAULT))", LINES),
     ("lone edges count as shared ones", SAMPLES + "contour.rs",
      "let less = if kind > 1.0 {", "let less = if kind > 1.0 && !FAULT {", LINES),
-    ("edges of the own plane cross", SAMPLES + "contour.rs",
-     "some: jump.ne(zero) & !own,", "some: jump.ne(zero) & (!own | Mask::splat(l, FAULT)),", LINES),
     ("volumes are trusted wherever they are drawn", SAMPLES + "contour.rs",
      "image.some & !far & close", "image.some & !far & close & Mask::splat(l, !FAULT)", LINES),
     ("second looks begin with the last event of the first", SAMPLES + "contour.rs",

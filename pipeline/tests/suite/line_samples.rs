@@ -343,16 +343,53 @@ fn sheets_have_the_shadow_of_the_truth() {
     }
 }
 
+fn solid(name: &str, centre: DVec3, size: DVec3) -> Object {
+    let mesh = shape::cuboid(centre, size)
+        .into_mesh(Shading::Flat)
+        .unwrap();
+    Object::new(name, mesh, Material::matt([0.7; 3]))
+}
+
+/// A beam between a light and what is behind its own top: below the horizon its other edges
+/// are in the way of nothing that is seen, and lines are reached without passing there.
+#[test]
+fn lines_are_reached_before_the_horizon() {
+    let mut errors = Vec::new();
+    for [half, tilt] in [[0.9, 0.0], [0.9, 0.5], [1.5, -0.7]] {
+        let light = Light {
+            shape: LightShape::Rectangle {
+                centre: DVec3::new(-1.1, -0.15, 0.1),
+                edge_u: DVec3::new(0.0, 1.2, tilt),
+                edge_v: DVec3::new(0.1, 0.0, 2.0 * half),
+            },
+            colour: [1.0; 3],
+        };
+        let scene = Scene::new(
+            Camera::look_at([0.5, 1.6, 1.4], [0.1, 0.0, 0.0]),
+            vec![light],
+            vec![
+                solid(
+                    "beam",
+                    DVec3::new(0.3, -0.5, 0.0),
+                    DVec3::new(1.6, 1.0, 0.6),
+                ),
+                solid(
+                    "block",
+                    DVec3::new(-0.2, 0.1, 0.1),
+                    DVec3::new(0.1, 0.2, 0.2),
+                ),
+            ],
+        );
+        let truth = truth(&scene);
+        errors.push(error(&scene, &truth, &["lines=48"]));
+    }
+    assert!(errors.iter().all(|[rmse, _]| *rmse < 4e-3), "{errors:?}");
+}
+
 /// A light that the plane of a caster's own facet cuts, near to it, seen from afar: neither
 /// the facet nor its edges hide it, though positions are rounded by as much as they are far.
 #[test]
 fn own_planes_hide_nothing_wherever_the_eye_is() {
-    let solid = |name: &str, centre: DVec3, size: DVec3| {
-        let mesh = shape::cuboid(centre, size)
-            .into_mesh(Shading::Flat)
-            .unwrap();
-        Object::new(name, mesh, Material::matt([0.7; 3]))
-    };
     let mut errors = Vec::new();
     for away in [1.0, 40.0, 160.0] {
         let eye = DVec3::new(0.4, 3.0, 2.5) * away;

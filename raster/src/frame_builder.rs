@@ -92,11 +92,11 @@ impl FrameBuilder {
         Ok(texture)
     }
 
-    /// The frame.
+    /// The frame as it is by now.
     #[must_use]
-    pub fn build(self) -> Recording {
-        let mut recording = self.recording;
-        recording.list.passes.push(self.pass);
+    pub fn build(&self) -> Recording {
+        let mut recording = self.recording.clone();
+        recording.list.passes.push(self.pass.clone());
         recording
     }
 }

@@ -187,6 +187,14 @@ pub struct Drawn {
 }
 
 impl Drawn {
+    /// The pixels of the result called `name`, as [`Texture::read_rgba8`] gives them.
+    ///
+    /// # Errors
+    /// There is none, or it is not colour.
+    pub fn read_rgba8(&self, name: &str) -> Result<Vec<[u8; 4]>, Error> {
+        self.output(name)?.read_rgba8()
+    }
+
     /// The result called `name`.
     ///
     /// # Errors

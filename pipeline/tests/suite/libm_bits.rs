@@ -45,7 +45,11 @@ fn functions_of_libm_have_the_bits_that_they_had() {
         for x in arguments() {
             let value = function(x);
             // NaN of any bits is one.
-            let bits = if value.is_nan() { u64::MAX } else { value.to_bits() };
+            let bits = if value.is_nan() {
+                u64::MAX
+            } else {
+                value.to_bits()
+            };
             all.update(bits.to_le_bytes());
         }
         let found = u64::from_be_bytes(all.finalize()[..8].try_into().unwrap());

@@ -151,8 +151,8 @@ fn closures_cannot_be_recorded_by_name() {
         if vertex {
             pipeline.vertex = per_vertex(&[], |_| ScalarVertexOutput::default());
         } else {
-            let grey = |_: &_| ScalarFragmentOutput::color([0.5; 4]);
-            pipeline.fragment = Some(per_fragment(FragmentOutputs::default(), grey));
+            let grey = ScalarFragmentOutput::color([0.5; 4]);
+            pipeline.fragment = Some(per_fragment(FragmentOutputs::default(), move |_| grey));
         }
         draw.pipeline = Arc::new(pipeline);
         record(Meta::new("closure"), &frame, RecordOptions::default()).unwrap_err()

@@ -28,7 +28,7 @@ pub(crate) struct CompareArgs {
     /// Somebody else's image of the scene instead of techniques: visibility as .npy
     /// (height, width) or gray .png, or a picture as .npy (height, width, 3) or .exr of
     /// linear RGB, or .png of sRGB. What differs, where, and on which side of the truth
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["techniques", "settings", "env"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["techniques", "settings", "env", "csv"])]
     pub(crate) against: Option<PathBuf>,
     /// The truth for --against, visibility as .npy (height, width) [default: --reference]
     #[arg(long, value_name = "FILE.npy", requires = "against", conflicts_with_all = ["techniques", "settings", "env"])]

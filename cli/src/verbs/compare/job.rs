@@ -90,6 +90,8 @@ impl CompareJob {
             light: args.light,
             image: None,
             entries: Vec::new(),
+            left_out: Vec::new(),
+            csv: None,
             reference: args.reference,
             cache: OracleCache::new(args.out_dir.join("oracle-cache")),
             settings: RenderSettings {

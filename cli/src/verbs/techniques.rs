@@ -289,6 +289,6 @@ mod tests {
             let all = registry.all().iter();
             all.map(|t| list(*t, e).lines().count()).sum::<usize>()
         });
-        assert!(2 * lengths[0] < lengths[1], "{lengths:?}");
+        assert!(3 * lengths[0] < 2 * lengths[1], "{lengths:?}");
     }
 }

@@ -337,7 +337,7 @@ fn what_a_technique_refuses_is_a_row_with_the_reason() {
     let folder = Folder::new("bench-refused");
     folder.write("open.obj", OPEN);
     let run = folder.gnomon(
-        "bench open.obj --size 16x12 --threads 1 --techniques unshadowed,shadow-volumes --out-dir b --json",
+        "bench open.obj --size 16x12 --threads 1 --techniques unshadowed,shadow-volumes:open-casters=refuse --out-dir b --json",
     );
     let run_text = run.stderr();
     let doc = run.json();

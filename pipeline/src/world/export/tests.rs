@@ -139,11 +139,61 @@ fn same_shape(a: &LightShape, b: &LightShape) {
     }
 }
 
+/// A light in the middle of the scene is as bright as one outside it.
+#[test]
+fn lights_in_the_middle_are_not_black_in_gltf() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    let bounds = scene.objects.iter().filter_map(|o| o.mesh.bounds());
+    let (low, high) = bounds
+        .reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+        .unwrap();
+    let middle = (low + high) / 2.0;
+    let light = |position, colour| crate::world::light::Light {
+        shape: LightShape::Point { position },
+        colour,
+    };
+    scene.lights = vec![
+        light(middle, [1.0, 0.5, 0.25]),
+        light(middle + glam::DVec3::Y * 9.0, [0.5; 3]),
+    ];
+    let (folder, _) = written(&scene, "middle");
+    let read = load_and_frame(&folder.join("it.glb"), Outside::Refused).unwrap();
+    for (own, other) in scene.lights.iter().zip(&read.lights) {
+        for (a, b) in own.colour.iter().zip(other.colour) {
+            assert!((a - b).abs() < 1e-5, "{a} {b}");
+        }
+    }
+}
+
 #[test]
 fn names_cannot_break_lines_or_tables() {
     let mut scene = builtin::build("cylinder").unwrap();
-    scene.objects[1].name = "a\n[[lights]]\n\"'#".to_owned();
+    scene.objects[1].name = "a\n[[lights]]\n\"'#\\".to_owned();
     let (folder, _) = written(&scene, "names");
     let mut source = SceneSource::open(folder.join("it.toml").to_str().unwrap()).unwrap();
-    assert_eq!(source.at(0.0).unwrap().objects[1].name, "a [[lights]] \"'#");
+    let read = source.at(0.0).unwrap();
+    assert_eq!(read.objects[1].name, "a [[lights]] \"'#\\");
+    // A backslash at the end of a line of OBJ would take the first vertex away.
+    assert_eq!(proper(&scene.objects[1]), proper(&read.objects[1]));
+}
+
+#[test]
+fn the_description_names_only_files_that_are_written() {
+    let scene = builtin::build("cylinder").unwrap();
+    for (formats, named) in [
+        (&[ExportFormat::Gltf][..], false),
+        (&[ExportFormat::Obj], true),
+    ] {
+        let exported = export(&scene, [64, 48], "it", formats);
+        let (name, text) = &exported.files[0];
+        assert_eq!(name, "it.json");
+        let description: serde_json::Value = serde_json::from_slice(text).unwrap();
+        for object in description["objects"].as_array().unwrap() {
+            let file = object["mesh"]["obj"].as_str();
+            assert_eq!(file.is_some(), named, "{object}");
+            let written = |f: &str| exported.files.iter().any(|(name, _)| name == f);
+            assert!(file.is_none_or(written), "{object}");
+            assert!(object["triangles"].as_u64().unwrap() > 0);
+        }
+    }
 }

@@ -28,6 +28,7 @@ use std::path::Path;
 use glam::DMat4;
 
 pub use error::{GltfError, GltfProblem};
+pub(crate) use light::distance;
 
 use super::piece::{Model, Piece};
 use crate::world::files::{self, FileError, Outside, SceneFolder};

@@ -557,6 +557,54 @@ fn errors_name_place_value_and_what_is_valid() {
 }
 
 #[test]
+fn eyes_and_lights_have_places_and_axes_that_are_numbers() {
+    let eye = json!({"camera": 0});
+    let [point, sun, rect] =
+        [("punctual", 0), ("punctual", 1), ("area", 0)].map(|(kind, light)| {
+            let extension = match kind {
+                "area" => "EXT_lights_area",
+                _ => "KHR_lights_punctual",
+            };
+            json!({"extensions": {extension: {"light": light}}})
+        });
+    let with_node = |node: &Value, key: &str, value: Value| {
+        let mut node = node.clone();
+        node[key] = value;
+        with(&[
+            ("/nodes", json!([{"mesh": 0}, node])),
+            ("/scenes/0/nodes", json!([0, 1])),
+            (
+                "/cameras",
+                json!([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.25}}]),
+            ),
+            (
+                "/extensions",
+                json!({
+                    "KHR_lights_punctual": {"lights": [{"type": "point"}, {"type": "directional"}]},
+                    "EXT_lights_area": {"lights": [{"type": "rect"}]},
+                }),
+            ),
+        ])
+    };
+    let place = |x: f64| json!([x, 0.0, 0.0]);
+    for (node, key, value, part) in [
+        (&eye, "translation", place(1e17), "the camera's place"),
+        (&eye, "scale", json!([1.0, 1.0, 1e200]), "the camera's node"),
+        (&point, "translation", place(1e39), "its place"),
+        (&rect, "translation", place(-1e200), "its place"),
+        (&sun, "scale", json!([1.0, 1.0, 1e200]), "an axis"),
+        (&rect, "scale", json!([1e200, 1.0, 1.0]), "size where"),
+        (&rect, "scale", json!([1.0, 1.0, 1e39]), "size where"),
+    ] {
+        let message = message(&with_node(node, key, value));
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    for node in [&eye, &point, &sun, &rect] {
+        assert!(read(&with_node(node, "translation", place(1e6))).is_ok());
+    }
+}
+
+#[test]
 fn containers_are_checked() {
     let whole = glb(&file(), &buffer());
     let message = |bytes: &[u8]| parse(bytes, "t").unwrap_err().to_string();

@@ -255,6 +255,14 @@ fn counts_without_data_take_no_memory() {
         "element nothing 18446744073709551615\nelement face 4",
     );
     same(none, &["ignored-elements"]);
+    // The sum of both is more than a count holds.
+    let twice = text().replace(
+        "element face 4",
+        "element a 9223372036854775808\nelement b 9223372036854775808\nelement face 4",
+    );
+    let mesh = read(twice).unwrap();
+    assert_eq!(codes(&mesh), ["ignored-elements"]);
+    assert_eq!(mesh.warnings[0].count, usize::MAX);
     let list = format!(
         "{}{POINTS}4294967295 0 1 2",
         HEAD.replace("uchar int", "uint int")

@@ -52,7 +52,8 @@ fn scene_files_hold_everything_to_the_bit() {
             .filter(|o| !o.mesh.triangles().is_empty());
         for (own, read) in drawn.zip(&read.objects) {
             assert_eq!(proper(own), proper(read), "{} {}", entry.name, own.name);
-            assert_eq!((own.casts, own.receives), (read.casts, read.receives));
+            let parts = |o: &Object| (o.casts, o.receives, o.open);
+            assert_eq!(parts(own), parts(read));
             let paint = |o: &Object| {
                 o.painted()
                     .into_iter()
@@ -137,6 +138,30 @@ fn same_shape(a: &LightShape, b: &LightShape) {
         let same = |a: glam::DVec3, b: glam::DVec3| (a - b).length().min((a + b).length());
         assert!(same(*u, *edge_u) < 1e-9 && same(*v, *edge_v) < 1e-9);
     }
+}
+
+#[test]
+fn open_casters_are_open_when_they_are_read_back() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    let sheet = crate::world::shape::plane(1.0, 0.5);
+    let mesh = sheet.into_mesh(Shading::Flat).unwrap();
+    let mut object = Object::new(
+        "sheet",
+        mesh,
+        crate::world::material::Material::matt([0.5; 3]),
+    );
+    object.open = true;
+    scene.objects.push(object);
+    let (folder, _) = written(&scene, "open");
+    let read = file::load(&folder.join("it.toml")).unwrap();
+    let open = |s: &Scene| {
+        s.objects
+            .iter()
+            .map(|o| (o.casts, o.open))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(open(&read), open(&scene));
+    assert_eq!(open(&read).last(), Some(&(true, true)));
 }
 
 /// A light in the middle of the scene is as bright as one outside it.

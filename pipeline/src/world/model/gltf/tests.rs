@@ -605,6 +605,35 @@ fn eyes_and_lights_have_places_and_axes_that_are_numbers() {
 }
 
 #[test]
+fn nodes_are_marked_before_anything_is_kept_of_them() {
+    // The second mention is found before the first is placed.
+    let bad = json!({"rotation": [0, 0, 0, 0]});
+    let file = with(&[("/nodes", json!([{"children": vec![1; 1000]}, bad]))]);
+    let message = message(&file);
+    assert!(
+        message.contains("nodes[1]") && message.contains("met twice"),
+        "{message}"
+    );
+}
+
+#[test]
+fn json_of_too_many_values_is_refused_before_it_is_read() {
+    assert!(check_json(b"{\"a\":[{},{}]}", 4).is_ok());
+    let refused = check_json(b"{\"a\":[{},{}]}", 3).unwrap_err().to_string();
+    assert!(
+        refused.contains("has 4 bytes") && refused.contains("at most 3"),
+        "{refused}"
+    );
+    let empty = [
+        b"{\"nodes\":[".to_vec(),
+        b"{},".repeat(MAX_JSON / 2),
+        b"{}]}".to_vec(),
+    ];
+    let message = parse(&empty.concat(), "t.gltf").unwrap_err().to_string();
+    assert!(message.contains("at most 4194304"), "{message}");
+}
+
+#[test]
 fn containers_are_checked() {
     let whole = glb(&file(), &buffer());
     let message = |bytes: &[u8]| parse(bytes, "t").unwrap_err().to_string();

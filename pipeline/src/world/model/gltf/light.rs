@@ -206,10 +206,8 @@ pub(super) fn lit(sources: Vec<Source>, bounds: (DVec3, DVec3)) -> Vec<Light> {
     let brightest = (sources.iter().zip(&each)).map(|(s, e)| e * strongest(s));
     let brightest = brightest.fold(0.0, f64::max);
     // Of what is black it may be anything, but finite.
-    let share = |e: f64| match brightest > 0.0 {
-        true => (e / brightest).min(f64::MAX),
-        false => 0.0,
-    };
+    let finite = |e: f64| (e / brightest).min(f64::MAX);
+    let share = |e: f64| if brightest > 0.0 { finite(e) } else { 0.0 };
     let light = |(source, e): (Source, f64)| Light {
         shape: source.shape,
         colour: source.color.map(|c| (c * share(e)) as f32),

@@ -25,7 +25,9 @@ pub fn is_convex(mesh: &Mesh) -> bool {
     let edges = EdgeAdjacency::new(mesh.triangles());
     let outwards = mesh.signed_volume().signum();
     edges.closedness(mesh).is_closed()
-        && pieces_by(mesh, &edges).iter().all(|p| *p == 0)
+        && pieces_by(mesh.triangles().len(), &edges)
+            .iter()
+            .all(|p| *p == 0)
         && edges.edges().all(|e| is_ridge(mesh, &e, outwards, slack))
 }
 
@@ -47,27 +49,34 @@ fn is_flat(mesh: &Mesh, slack: f64) -> bool {
 /// The number of each triangle's piece: those that edges join are one.
 #[must_use]
 pub fn pieces(mesh: &Mesh) -> Vec<u32> {
-    pieces_by(mesh, &EdgeAdjacency::new(mesh.triangles()))
+    let triangles = mesh.triangles();
+    pieces_by(triangles.len(), &EdgeAdjacency::new(triangles))
 }
 
-fn pieces_by(mesh: &Mesh, edges: &EdgeAdjacency) -> Vec<u32> {
+/// Each triangle is kept once and each edge walked once, however many share it.
+fn pieces_by(triangles: usize, edges: &EdgeAdjacency) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
-    let mut own = vec![NONE; mesh.triangles().len()];
+    let mut own = vec![NONE; triangles];
+    let mut met = vec![false; edges.len()];
     let mut open = Vec::new();
     let mut count = 0;
     for first in 0..own.len() {
         if own[first] != NONE {
             continue;
         }
+        own[first] = count;
         open.push(first);
         while let Some(t) = open.pop() {
-            if own[t] != NONE {
-                continue;
-            }
-            own[t] = count;
-            for corner in 0..3 {
-                let edge = edges.edge(edges.edge_of(t, corner));
-                open.extend(edge.uses.iter().map(|u| u.triangle as usize));
+            for edge in (0..3).map(|corner| edges.edge_of(t, corner)) {
+                if std::mem::replace(&mut met[edge], true) {
+                    continue;
+                }
+                for other in edges.edge(edge).uses.iter().map(|u| u.triangle as usize) {
+                    if own[other] == NONE {
+                        own[other] = count;
+                        open.push(other);
+                    }
+                }
             }
         }
         count += 1;
@@ -141,6 +150,18 @@ mod tests {
                 "{low}"
             );
         }
+    }
+
+    /// As many triangles as a file likes may be on one edge: the square of their number is
+    /// neither kept nor walked.
+    #[test]
+    fn an_edge_of_many_triangles_joins_them_quickly() {
+        let fan = (0..20_000).map(|k| [0, 1, 2 + k]);
+        let alone = [[20_002, 20_003, 20_004]];
+        let triangles: Vec<[u32; 3]> = fan.chain(alone).collect();
+        let own = pieces_by(triangles.len(), &EdgeAdjacency::new(&triangles));
+        assert!(own[..20_000].iter().all(|p| *p == 0));
+        assert_eq!(own[20_000..], [1]);
     }
 
     /// A vertex of a ball that is pushed in, whichever way round its triangles are.

@@ -18,7 +18,8 @@ impl Tally {
         if self.count == 0 && count > 0 {
             self.first = first();
         }
-        self.count += count;
+        // Counts of files may be any.
+        self.count = self.count.saturating_add(count);
     }
 
     /// A warning that says `what` was amiss, if it was.

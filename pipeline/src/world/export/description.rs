@@ -6,11 +6,17 @@ use super::{Exporting, tables};
 use crate::world::scene::Scene;
 
 /// Lights and camera as scene files have them; matrices as rows, for column vectors.
-pub(super) fn describe(scene: &Scene, size: [u32; 2], objects: &[Exporting<'_>]) -> Value {
+/// Objects name their OBJ files if those are `with_obj`.
+pub(super) fn describe(
+    scene: &Scene,
+    size: [u32; 2],
+    objects: &[Exporting<'_>],
+    with_obj: bool,
+) -> Value {
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let camera = &scene.camera;
     let lights: Vec<Value> = scene.lights.iter().map(tables::light).collect();
-    let described: Vec<Value> = objects.iter().map(object).collect();
+    let described: Vec<Value> = objects.iter().map(|o| object(o, with_obj)).collect();
     json!({
         "scene": scene.name,
         "size": size,
@@ -33,9 +39,12 @@ pub(super) fn describe(scene: &Scene, size: [u32; 2], objects: &[Exporting<'_>])
     })
 }
 
-fn object(exporting: &Exporting<'_>) -> Value {
+fn object(exporting: &Exporting<'_>, with_obj: bool) -> Value {
     let mesh = &exporting.object.mesh;
     let mut table = tables::object(exporting);
+    if let (false, Some(table)) = (with_obj, table.as_object_mut()) {
+        table.remove("mesh");
+    }
     table["vertices"] = json!(mesh.positions().len());
     table["triangles"] = json!(mesh.triangles().len());
     table

@@ -7,6 +7,7 @@ use super::Exporting;
 use crate::world::light::{Light, LightShape};
 use crate::world::material::{Material, MaterialPart};
 use crate::world::mesh::ShadingVertices;
+use crate::world::model::gltf::distance;
 use crate::world::scene::{Camera, Scene};
 
 const FLOAT: u32 = 5126;
@@ -19,19 +20,18 @@ pub(super) fn glb(scene: &Scene, size: [u32; 2], objects: &[Exporting<'_>]) -> V
         file.add_object(object);
     }
     file.add_camera(&scene.camera, size);
-    let middle = middle(scene);
+    let bounds = bounds(scene);
     for light in &scene.lights {
-        file.add_light(light, middle);
+        file.add_light(light, bounds);
     }
     file.finish(&scene.name)
 }
 
-/// Middle of the bounds of all objects, where the reader measures lights.
-fn middle(scene: &Scene) -> DVec3 {
+/// Bounds of all objects, in whose middle the reader measures lights.
+fn bounds(scene: &Scene) -> (DVec3, DVec3) {
     let bounds = scene.objects.iter().filter_map(|o| o.mesh.bounds());
     let all = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
-    let (low, high) = all.unwrap_or_default();
-    (low + high) / 2.0
+    all.unwrap_or_default()
 }
 
 /// Lists of the JSON, and the buffer.
@@ -128,13 +128,17 @@ impl File {
             .push(json!({"name": "camera", "camera": 0, "matrix": matrix}));
     }
 
-    fn add_light(&mut self, light: &Light, middle: DVec3) {
+    fn add_light(&mut self, light: &Light, bounds: (DVec3, DVec3)) {
         // As bright at the middle as everywhere here.
         let strongest = light.colour.into_iter().fold(0.0, f32::max);
         let share = |c: f32| f64::from(if strongest > 0.0 { c / strongest } else { 0.0 });
         let color = light.colour.map(share);
         let strongest = f64::from(strongest);
-        let candela = |at: DVec3| strongest * (at - middle).length_squared();
+        let candela = |at: DVec3| {
+            let distance = distance(at, bounds);
+            strongest * distance * distance
+        };
+        let middle = (bounds.0 + bounds.1) / 2.0;
         if let Some((area, axes, centre, square)) = area(&light.shape, middle) {
             let mut own = area;
             own["color"] = json!(color);

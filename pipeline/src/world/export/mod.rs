@@ -38,9 +38,10 @@ pub struct Exported {
 pub fn export(scene: &Scene, size: [u32; 2], name: &str, formats: &[ExportFormat]) -> Exported {
     let mut out = Exported::default();
     let objects = objects(scene, name);
-    let description = description::describe(scene, size, &objects);
+    let with_obj = formats.contains(&ExportFormat::Obj);
+    let description = description::describe(scene, size, &objects, with_obj);
     out.add(format!("{name}.json"), pretty(&description));
-    if formats.contains(&ExportFormat::Obj) {
+    if with_obj {
         out.add(format!("{name}.mtl"), obj::materials(&objects));
         for object in &objects {
             let text = obj::model(object, &format!("{name}.mtl"));

@@ -18,6 +18,11 @@ fn name(object: &Exporting<'_>, k: usize) -> String {
     format!("m{}-{k}", object.number)
 }
 
+/// A name without what ends lines or, being last in one, joins the next.
+fn word(name: &str) -> String {
+    super::tables::word(name).replace('\\', "_")
+}
+
 /// The library of all materials.
 pub(super) fn materials(objects: &[Exporting<'_>]) -> String {
     let mut text = String::new();
@@ -42,7 +47,7 @@ fn write_material(text: &mut String, m: &Material) {
 pub(super) fn model(object: &Exporting<'_>, library: &str) -> String {
     let mesh = &object.object.mesh;
     let mut text = format!("mtllib {library}\n");
-    line!(text, "o {}", super::tables::word(&object.object.name));
+    line!(text, "o {}", word(&object.object.name));
     for [x, y, z] in mesh.positions() {
         line!(text, "v {x} {y} {z}");
     }

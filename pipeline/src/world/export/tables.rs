@@ -69,13 +69,17 @@ fn shape(shape: &LightShape) -> Value {
 }
 
 pub(super) fn object(object: &Exporting<'_>) -> Value {
-    json!({
+    let mut table = json!({
         "name": word(&object.object.name),
         "mesh": {"obj": object.file},
         "crease": crease(&object.object.mesh),
         "casts": object.object.casts,
         "receives": object.object.receives,
-    })
+    });
+    if object.object.open {
+        table["open"] = json!(true);
+    }
+    table
 }
 
 /// A scene file that names the OBJ files.

@@ -52,7 +52,8 @@ fn scene_files_hold_everything_to_the_bit() {
             .filter(|o| !o.mesh.triangles().is_empty());
         for (own, read) in drawn.zip(&read.objects) {
             assert_eq!(proper(own), proper(read), "{} {}", entry.name, own.name);
-            assert_eq!((own.casts, own.receives), (read.casts, read.receives));
+            let parts = |o: &Object| (o.casts, o.receives, o.open);
+            assert_eq!(parts(own), parts(read));
             let paint = |o: &Object| {
                 o.painted()
                     .into_iter()
@@ -140,10 +141,84 @@ fn same_shape(a: &LightShape, b: &LightShape) {
 }
 
 #[test]
+fn open_casters_are_open_when_they_are_read_back() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    let sheet = crate::world::shape::plane(1.0, 0.5);
+    let mesh = sheet.into_mesh(Shading::Flat).unwrap();
+    let mut object = Object::new(
+        "sheet",
+        mesh,
+        crate::world::material::Material::matt([0.5; 3]),
+    );
+    object.open = true;
+    scene.objects.push(object);
+    let (folder, _) = written(&scene, "open");
+    let read = file::load(&folder.join("it.toml")).unwrap();
+    let open = |s: &Scene| {
+        s.objects
+            .iter()
+            .map(|o| (o.casts, o.open))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(open(&read), open(&scene));
+    assert_eq!(open(&read).last(), Some(&(true, true)));
+}
+
+/// A light in the middle of the scene is as bright as one outside it.
+#[test]
+fn lights_in_the_middle_are_not_black_in_gltf() {
+    let mut scene = builtin::build("cylinder").unwrap();
+    let bounds = scene.objects.iter().filter_map(|o| o.mesh.bounds());
+    let (low, high) = bounds
+        .reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+        .unwrap();
+    let middle = (low + high) / 2.0;
+    let light = |position, colour| crate::world::light::Light {
+        shape: LightShape::Point { position },
+        colour,
+    };
+    scene.lights = vec![
+        light(middle, [1.0, 0.5, 0.25]),
+        light(middle + glam::DVec3::Y * 9.0, [0.5; 3]),
+    ];
+    let (folder, _) = written(&scene, "middle");
+    let read = load_and_frame(&folder.join("it.glb"), Outside::Refused).unwrap();
+    for (own, other) in scene.lights.iter().zip(&read.lights) {
+        for (a, b) in own.colour.iter().zip(other.colour) {
+            assert!((a - b).abs() < 1e-5, "{a} {b}");
+        }
+    }
+}
+
+#[test]
 fn names_cannot_break_lines_or_tables() {
     let mut scene = builtin::build("cylinder").unwrap();
-    scene.objects[1].name = "a\n[[lights]]\n\"'#".to_owned();
+    scene.objects[1].name = "a\n[[lights]]\n\"'#\\".to_owned();
     let (folder, _) = written(&scene, "names");
     let mut source = SceneSource::open(folder.join("it.toml").to_str().unwrap()).unwrap();
-    assert_eq!(source.at(0.0).unwrap().objects[1].name, "a [[lights]] \"'#");
+    let read = source.at(0.0).unwrap();
+    assert_eq!(read.objects[1].name, "a [[lights]] \"'#\\");
+    // A backslash at the end of a line of OBJ would take the first vertex away.
+    assert_eq!(proper(&scene.objects[1]), proper(&read.objects[1]));
+}
+
+#[test]
+fn the_description_names_only_files_that_are_written() {
+    let scene = builtin::build("cylinder").unwrap();
+    for (formats, named) in [
+        (&[ExportFormat::Gltf][..], false),
+        (&[ExportFormat::Obj], true),
+    ] {
+        let exported = export(&scene, [64, 48], "it", formats);
+        let (name, text) = &exported.files[0];
+        assert_eq!(name, "it.json");
+        let description: serde_json::Value = serde_json::from_slice(text).unwrap();
+        for object in description["objects"].as_array().unwrap() {
+            let file = object["mesh"]["obj"].as_str();
+            assert_eq!(file.is_some(), named, "{object}");
+            let written = |f: &str| exported.files.iter().any(|(name, _)| name == f);
+            assert!(file.is_none_or(written), "{object}");
+            assert!(object["triangles"].as_u64().unwrap() > 0);
+        }
+    }
 }

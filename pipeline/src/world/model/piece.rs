@@ -7,6 +7,10 @@ use crate::world::material::MaterialPart;
 use crate::world::shape::Shape;
 use crate::world::warning::SceneWarning;
 
+/// Vertices or triangles that are drawn of a file at most: formats whose bytes say more than
+/// one each are bounded by it.
+pub(super) const MOST: u64 = 1 << 23;
+
 /// One solid of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {

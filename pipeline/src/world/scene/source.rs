@@ -129,6 +129,35 @@ mod tests {
     }
 
     #[test]
+    fn lights_beside_the_environment_of_a_file_are_refused() {
+        let folder = crate::world::scratch::Scratch::made("view-environment");
+        let path = folder.join("lit.toml");
+        let text = "[camera]\neye = [0, 2, 5]\ntarget = [0, 0.5, 0]\n\
+            [environment]\nmap = \"sky\"\nside = 32\nlights = 12\n\
+            [[objects]]\nmesh.box = { size = [1, 1, 1] }\n";
+        std::fs::write(&path, text).unwrap();
+        let source = SceneSource::open(path.to_str().unwrap()).unwrap();
+        let eye = Some(glam::DVec3::new(0.0, 3.0, 9.0));
+        let mut view = View {
+            eye,
+            ..View::default()
+        };
+        let mut seen = source.clone().with_view(view.clone());
+        assert!(seen.at(0.0).unwrap().environment.is_some());
+        let light = crate::world::light::Light::horizontal_square(glam::DVec3::Y * 9.0, 0.5);
+        view.lights = vec![light];
+        let refused = source.with_view(view).at(0.0);
+        let Err(SceneError::View(problem)) = refused else {
+            panic!("{refused:?}");
+        };
+        assert_eq!(
+            problem,
+            crate::world::scene::ViewError::LightsBesideEnvironment
+        );
+        assert!(problem.to_string().contains("valid is one of them"));
+    }
+
+    #[test]
     fn an_environment_is_read_once_and_lights_every_moment() {
         let request = EnvironmentRequest::new("sky");
         let mut source = SceneSource::open("walk")

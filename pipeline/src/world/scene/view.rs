@@ -27,6 +27,12 @@ pub enum ViewError {
         /// Where both are.
         at: DVec3,
     },
+    /// Lights for a scene that a map lights, with ambient light and background.
+    #[error(
+        "lights are given for a scene that [environment] lights; valid is one of them: \
+         leave the lights out, or take [environment] out of the scene"
+    )]
+    LightsBesideEnvironment,
     /// A value that is not valid.
     #[error("{what} is {value}; valid is {valid}")]
     Bad {
@@ -44,9 +50,13 @@ impl View {
     /// Whoever looks along the scene's "up" has -z up in the picture.
     ///
     /// # Errors
-    /// The eye is its target, or a value is not valid.
+    /// The eye is its target, a value is not valid, or there are lights beside an
+    /// environment.
     pub(super) fn apply(&self, scene: &mut Scene, framed: bool) -> Result<(), ViewError> {
         if !self.lights.is_empty() {
+            if scene.environment.is_some() {
+                return Err(ViewError::LightsBesideEnvironment);
+            }
             scene.lights.clone_from(&self.lights);
         }
         if let Some(fov) = self.fov_y_degrees {

@@ -8,6 +8,9 @@ use super::notes::Notes;
 use super::schema::Root;
 use crate::world::model::piece::ModelCamera;
 
+/// Largest coordinate of an eye: one unit from there is another place to nine digits.
+const FARTHEST: f64 = 1e9;
+
 /// The eye at a node, if it is one in perspective and the `first`.
 pub(super) fn at(
     root: &Root,
@@ -44,6 +47,10 @@ pub(super) fn at(
     let eye = placed.model_from_node.transform_point3(DVec3::ZERO);
     // Their sine is NaN for axes without a length.
     let upright = forward.cross(up).length() > 1e-9;
+    if eye.abs().max_element() > FARTHEST {
+        let valid = "up to 1e9 from 0, where a direction has its digits";
+        return Err(bad("the camera's place", eye.to_string(), valid));
+    }
     if !eye.is_finite() || !upright {
         let valid = "a finite place, and axes that are not parallel";
         let value = format!("at {eye}, forward {forward}, up {up}");

@@ -40,6 +40,17 @@ pub enum GltfProblem {
     /// Not the JSON of a glTF file.
     #[error("the JSON is not valid: {0}")]
     Json(#[from] serde_json::Error),
+    /// JSON that would take far more memory than its bytes.
+    #[error(
+        "the JSON has {count} bytes that are '{{' or ','; valid is at most {limit}: \
+         put numbers into a buffer"
+    )]
+    TooMuchJson {
+        /// How many it has.
+        count: usize,
+        /// The most that is read.
+        limit: usize,
+    },
     /// A version that is not read.
     #[error("version is '{version}'; version 2 is read")]
     Version {

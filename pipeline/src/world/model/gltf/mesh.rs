@@ -1,5 +1,7 @@
 //! Meshes: primitives of points and indices to the triangles of one solid.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::accessor;
@@ -8,10 +10,8 @@ use super::error::{Checked, GltfProblem, element};
 use super::notes::Notes;
 use super::schema::{Primitive, Root};
 use crate::world::faces::{Triangles, compact, first_equals};
+use crate::world::model::piece::MOST;
 use crate::world::shape::Shape;
-
-/// Vertices or triangles that are drawn of a file at most.
-pub(super) const MOST: u64 = 1 << 23;
 
 const TRIANGLES: u32 = 4;
 const STRIP: u32 = 5;
@@ -25,8 +25,13 @@ pub(super) struct Local {
     pub(super) painted: Vec<(usize, Vec<u32>)>,
 }
 
-/// Points, and triangles of them.
-type Drawn = (Vec<DVec3>, Vec<[u32; 3]>);
+/// The points of a mesh: primitives that share an accessor share its points.
+#[derive(Default)]
+struct Points {
+    all: Vec<DVec3>,
+    /// Of each accessor the number of its first point, and how many it has.
+    places: BTreeMap<usize, (u32, usize)>,
+}
 
 /// Reads meshes, and bounds what they add up to.
 #[derive(Default)]
@@ -46,70 +51,53 @@ impl Reader {
         place: &str,
     ) -> Checked<Local> {
         let mesh = element(&root.meshes, index, "meshes", place)?;
-        let mut points = Vec::new();
+        let mut points = Points::default();
         let mut corners = Vec::new();
         for (number, primitive) in mesh.primitives.iter().enumerate() {
             let place = format!("meshes[{index}].primitives[{number}]");
-            let base = points.len() as u32;
-            let own = self.primitive(root, buffers, primitive, notes, &place)?;
-            let Some((own_points, own_triangles)) = own else {
+            if !is_drawn(primitive, notes, &place)? {
                 continue;
-            };
-            points.extend(own_points);
-            let moved = own_triangles.into_iter().map(|t| t.map(|c| c + base));
-            corners.extend(moved.map(|t| (t, primitive.material)));
+            }
+            let (base, count) = self.points(root, buffers, primitive, &mut points, &place)?;
+            let indices = self.indices(root, buffers, primitive, count, &place)?;
+            let mode = primitive.mode.unwrap_or(TRIANGLES);
+            let cut = notes_cut(mode, indices.len());
+            notes.cut.add_many(usize::from(cut), || place);
+            let moved = triangles(mode, &indices).into_iter();
+            corners.extend(moved.map(|t| (t.map(|c| c + base), primitive.material)));
         }
-        Ok(solid(&points, &corners, notes, index))
+        Ok(solid(&points.all, &corners, notes, index))
     }
 
-    /// The points of a primitive, and its triangles.
-    fn primitive(
+    /// The number of the first point of a primitive, and how many it has.
+    fn points(
         &mut self,
         root: &Root,
         buffers: &mut Buffers<'_>,
         primitive: &Primitive,
-        notes: &mut Notes,
+        points: &mut Points,
         place: &str,
-    ) -> Checked<Option<Drawn>> {
-        let mode = primitive.mode.unwrap_or(TRIANGLES);
-        match mode {
-            TRIANGLES | STRIP | FAN => {}
-            0..TRIANGLES => {
-                notes.lines.add(|| place.to_owned());
-                return Ok(None);
-            }
-            other => {
-                let (what, value) = ("mode", other.to_string());
-                let valid = "a whole number up to 6";
-                return Err(GltfProblem::Bad { what, value, valid }.at(place));
-            }
-        }
-        notes
-            .morphs
-            .add_many(usize::from(!primitive.targets.is_empty()), || {
-                place.to_owned()
-            });
-        let colours = primitive.attributes.color.is_some();
-        notes
-            .colours
-            .add_many(usize::from(colours), || place.to_owned());
+    ) -> Checked<(u32, usize)> {
         let what = "attributes.POSITION";
         let position = primitive.attributes.position;
         let position = position.ok_or_else(|| GltfProblem::Missing { what }.at(place))?;
+        if let Some(known) = points.places.get(&position) {
+            return Ok(*known);
+        }
         let at = format!("{place}.{what}");
         let left = MOST - self.vertices;
-        let points: Vec<[f64; 3]> = accessor::read(root, buffers, position, "VEC3", left, &at)?;
-        self.vertices += points.len() as u64;
-        let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
-        if let Some(number) = points.iter().position(|p| !p.is_finite()) {
-            let (what, value) = ("a coordinate", format!("{:?}", points[number].to_array()));
+        let own: Vec<[f64; 3]> = accessor::read(root, buffers, position, "VEC3", left, &at)?;
+        self.vertices += own.len() as u64;
+        let finite = |p: &[f64; 3]| p.iter().all(|c| c.is_finite());
+        if let Some(number) = own.iter().position(|p| !finite(p)) {
+            let (what, value) = ("a coordinate", format!("{:?}", own[number]));
             let valid = "finite numbers";
             return Err(GltfProblem::Bad { what, value, valid }.at(format!("{at}[{number}]")));
         }
-        let indices = self.indices(root, buffers, primitive, points.len(), place)?;
-        let cut = notes_cut(mode, indices.len());
-        notes.cut.add_many(usize::from(cut), || place.to_owned());
-        Ok(Some((points, triangles(mode, &indices))))
+        let known = (points.all.len() as u32, own.len());
+        points.all.extend(own.into_iter().map(DVec3::from));
+        points.places.insert(position, known);
+        Ok(known)
     }
 
     fn indices(
@@ -120,11 +108,17 @@ impl Reader {
         points: usize,
         place: &str,
     ) -> Checked<Vec<u32>> {
+        let left = 3 * MOST - self.indices;
         let Some(accessor) = primitive.indices else {
+            // Many primitives may share few points.
+            if points as u64 > left {
+                let (what, limit) = ("vertices or indices", left);
+                return Err(GltfProblem::TooMuch { what, limit }.at(place));
+            }
+            self.indices += points as u64;
             return Ok((0..points as u32).collect());
         };
         let place = format!("{place}.indices");
-        let left = 3 * MOST - self.indices;
         let values: Vec<[f64; 1]> =
             accessor::read(root, buffers, accessor, "SCALAR", left, &place)?;
         self.indices += values.len() as u64;
@@ -138,6 +132,27 @@ impl Reader {
             }
         }
     }
+}
+
+/// Whether a primitive has triangles; what else it has is noted.
+fn is_drawn(primitive: &Primitive, notes: &mut Notes, place: &str) -> Checked<bool> {
+    match primitive.mode.unwrap_or(TRIANGLES) {
+        TRIANGLES | STRIP | FAN => {}
+        0..TRIANGLES => {
+            notes.lines.add(|| place.to_owned());
+            return Ok(false);
+        }
+        other => {
+            let (what, value) = ("mode", other.to_string());
+            let valid = "a whole number up to 6";
+            return Err(GltfProblem::Bad { what, value, valid }.at(place));
+        }
+    }
+    let morphs = !primitive.targets.is_empty();
+    (notes.morphs).add_many(usize::from(morphs), || place.to_owned());
+    let colours = primitive.attributes.color.is_some();
+    (notes.colours).add_many(usize::from(colours), || place.to_owned());
+    Ok(true)
 }
 
 /// Whether corners are left over.
@@ -207,5 +222,49 @@ mod tests {
             assert_eq!(triangles(mode, &[]), [[0; 3]; 0]);
             assert_eq!(triangles(mode, &c[..2]), [[0; 3]; 0]);
         }
+    }
+
+    /// Primitives without indices have as many as they have points, however they share them.
+    #[test]
+    fn points_without_indices_count_as_indices() {
+        let root = Root::default();
+        let mut buffers = Buffers::new(&root, None, None);
+        let mut reader = Reader {
+            vertices: 0,
+            indices: 3 * MOST - 5,
+        };
+        let primitive = Primitive::default();
+        let mut indices = |points| reader.indices(&root, &mut buffers, &primitive, points, "p");
+        assert_eq!(indices(3).unwrap(), [0, 1, 2]);
+        let problem = indices(3).unwrap_err().problem.to_string();
+        assert!(
+            problem.contains("more than 2 vertices or indices"),
+            "{problem}"
+        );
+    }
+
+    /// As exporters write a mesh of many materials.
+    #[test]
+    fn points_that_primitives_share_are_read_and_counted_once() {
+        let primitive = r#"{"attributes": {"POSITION": 0}}"#;
+        let other = r#"{"attributes": {"POSITION": 1}}"#;
+        let json = format!(
+            r#"{{"meshes": [{{"primitives": [{primitive}, {other}, {primitive}]}}],
+            "accessors": [
+                {{"bufferView": 0, "componentType": 5121, "count": 3, "type": "VEC3"}},
+                {{"bufferView": 0, "byteOffset": 3, "componentType": 5121, "count": 3, "type": "VEC3"}}
+            ],
+            "bufferViews": [{{"buffer": 0, "byteLength": 12}}],
+            "buffers": [{{"byteLength": 12}}]}}"#
+        );
+        let root: Root = serde_json::from_str(&json).unwrap();
+        let bytes = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1];
+        let mut buffers = Buffers::new(&root, Some(&bytes), None);
+        let mut reader = Reader::default();
+        let read = reader.mesh(&root, &mut buffers, 0, &mut Notes::default(), "");
+        let shape = read.unwrap().shape;
+        assert_eq!((reader.vertices, reader.indices), (6, 9));
+        assert_eq!(shape.triangles, [[0, 1, 2], [1, 2, 3], [0, 1, 2]]);
+        assert_eq!(shape.positions, [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]);
     }
 }

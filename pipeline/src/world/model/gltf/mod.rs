@@ -28,19 +28,24 @@ use std::path::Path;
 use glam::DMat4;
 
 pub use error::{GltfError, GltfProblem};
+pub(crate) use light::distance;
 
-use super::piece::{Model, Piece};
+use super::piece::{MOST, Model, Piece};
 use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::material::{Material, MaterialPart};
 use buffers::{Beside, Buffers};
 use error::{Checked, element};
-use mesh::{Local, MOST, Reader};
+use mesh::{Local, Reader};
 use nodes::Placed;
 use notes::Notes;
 use schema::Root;
 
 /// Bytes of a file that are read at most, without buffers that are files of their own.
 pub const MAX_GLTF_BYTES: u64 = 256 << 20;
+
+/// Bytes `{` and `,` of the JSON at most: as many tables and elements of lists there are, and
+/// a table of three bytes takes hundreds.
+const MAX_JSON: usize = 1 << 22;
 
 /// Extensions that a file may require.
 pub const SUPPORTED: [&str; 4] = [
@@ -105,6 +110,7 @@ fn parse_with(bytes: &[u8], file: &str, beside: Option<Beside<'_>>) -> Result<Mo
 
 fn model(bytes: &[u8], beside: Option<Beside<'_>>) -> Checked<Model> {
     let (json, own) = container::parts(bytes).map_err(|p| p.at(""))?;
+    check_json(json, MAX_JSON).map_err(|p| p.at(""))?;
     let root: Root = serde_json::from_slice(json).map_err(|e| GltfProblem::from(e).at(""))?;
     check_asset(&root)?;
     let mut build = Build {
@@ -116,6 +122,15 @@ fn model(bytes: &[u8], beside: Option<Beside<'_>>) -> Checked<Model> {
         triangles: 0,
     };
     build.model()
+}
+
+/// Refuses JSON that has more in it than the limit, before it is read.
+fn check_json(json: &[u8], limit: usize) -> Result<(), GltfProblem> {
+    let count = json.iter().filter(|b| matches!(b, b'{' | b',')).count();
+    if count > limit {
+        return Err(GltfProblem::TooMuchJson { count, limit });
+    }
+    Ok(())
 }
 
 /// Version and required extensions.

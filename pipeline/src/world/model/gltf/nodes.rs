@@ -14,23 +14,19 @@ pub(super) struct Placed<'a> {
 
 /// The nodes of the file's scene, parents before their children, in the file's order.
 pub(super) fn placed(root: &Root) -> Checked<Vec<Placed<'_>>> {
-    let mut stack: Vec<(usize, DMat4, String)> = Vec::new();
     let (roots, place) = roots(root)?;
-    let with = |nodes: &[usize], parent: DMat4, place: &str| {
-        let all = nodes.iter().rev().map(|n| (*n, parent, place.to_owned()));
-        all.collect::<Vec<_>>()
-    };
-    stack.extend(with(&roots, DMat4::IDENTITY, &place));
     let mut met = vec![false; root.nodes.len()];
+    let mut stack = Vec::new();
+    meet(&mut met, &roots, || place)?;
+    stack.extend(roots.iter().rev().map(|n| (*n, DMat4::IDENTITY)));
     let mut placed = Vec::new();
-    while let Some((number, parent, place)) = stack.pop() {
-        let node = element(&root.nodes, number, "nodes", &place)?;
-        let place = format!("nodes[{number}]");
-        if std::mem::replace(&mut met[number], true) {
-            return Err(GltfProblem::NotATree.at(place));
-        }
-        let model_from_node = parent * local(node, &place)?;
-        stack.extend(with(&node.children, model_from_node, &place));
+    while let Some((number, parent)) = stack.pop() {
+        let node = &root.nodes[number];
+        let place = || format!("nodes[{number}]");
+        let model_from_node = parent * local(node, &place())?;
+        meet(&mut met, &node.children, place)?;
+        let children = node.children.iter().rev();
+        stack.extend(children.map(|n| (*n, model_from_node)));
         placed.push(Placed {
             number,
             node,
@@ -38,6 +34,22 @@ pub(super) fn placed(root: &Root) -> Checked<Vec<Placed<'_>>> {
         });
     }
     Ok(placed)
+}
+
+/// Marks the nodes that `place` lists before anything is kept of them, so that as many are
+/// kept as there are, however often they are listed.
+fn meet(met: &mut [bool], nodes: &[usize], place: impl FnOnce() -> String) -> Checked<()> {
+    let count = met.len();
+    for &index in nodes {
+        let what = "nodes";
+        let Some(met) = met.get_mut(index) else {
+            return Err(GltfProblem::NoSuch { what, index, count }.at(place()));
+        };
+        if std::mem::replace(met, true) {
+            return Err(GltfProblem::NotATree.at(format!("nodes[{index}]")));
+        }
+    }
+    Ok(())
 }
 
 /// The scene's nodes; of a file without scenes those that are nobody's children.

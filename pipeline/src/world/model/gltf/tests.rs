@@ -557,6 +557,83 @@ fn errors_name_place_value_and_what_is_valid() {
 }
 
 #[test]
+fn eyes_and_lights_have_places_and_axes_that_are_numbers() {
+    let eye = json!({"camera": 0});
+    let [point, sun, rect] =
+        [("punctual", 0), ("punctual", 1), ("area", 0)].map(|(kind, light)| {
+            let extension = match kind {
+                "area" => "EXT_lights_area",
+                _ => "KHR_lights_punctual",
+            };
+            json!({"extensions": {extension: {"light": light}}})
+        });
+    let with_node = |node: &Value, key: &str, value: Value| {
+        let mut node = node.clone();
+        node[key] = value;
+        with(&[
+            ("/nodes", json!([{"mesh": 0}, node])),
+            ("/scenes/0/nodes", json!([0, 1])),
+            (
+                "/cameras",
+                json!([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.25}}]),
+            ),
+            (
+                "/extensions",
+                json!({
+                    "KHR_lights_punctual": {"lights": [{"type": "point"}, {"type": "directional"}]},
+                    "EXT_lights_area": {"lights": [{"type": "rect"}]},
+                }),
+            ),
+        ])
+    };
+    let place = |x: f64| json!([x, 0.0, 0.0]);
+    for (node, key, value, part) in [
+        (&eye, "translation", place(1e17), "the camera's place"),
+        (&eye, "scale", json!([1.0, 1.0, 1e200]), "the camera's node"),
+        (&point, "translation", place(1e39), "its place"),
+        (&rect, "translation", place(-1e200), "its place"),
+        (&sun, "scale", json!([1.0, 1.0, 1e200]), "an axis"),
+        (&rect, "scale", json!([1e200, 1.0, 1.0]), "size where"),
+        (&rect, "scale", json!([1.0, 1.0, 1e39]), "size where"),
+    ] {
+        let message = message(&with_node(node, key, value));
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    for node in [&eye, &point, &sun, &rect] {
+        assert!(read(&with_node(node, "translation", place(1e6))).is_ok());
+    }
+}
+
+#[test]
+fn nodes_are_marked_before_anything_is_kept_of_them() {
+    // The second mention is found before the first is placed.
+    let bad = json!({"rotation": [0, 0, 0, 0]});
+    let file = with(&[("/nodes", json!([{"children": vec![1; 1000]}, bad]))]);
+    let message = message(&file);
+    assert!(
+        message.contains("nodes[1]") && message.contains("met twice"),
+        "{message}"
+    );
+}
+
+#[test]
+fn json_of_too_many_values_is_refused_before_it_is_read() {
+    assert!(check_json(b"{\"a\":[{},{}]}", 4).is_ok());
+    let refused = check_json(b"{\"a\":[{},{}]}", 3).unwrap_err().to_string();
+    assert!(
+        refused.contains("has 4 bytes") && refused.contains("at most 3"),
+        "{refused}"
+    );
+    let empty = [
+        b"{\"nodes\":[".to_vec(),
+        b"{},".repeat(MAX_JSON / 2),
+        b"{}]}".to_vec(),
+    ];
+    let message = parse(&empty.concat(), "t.gltf").unwrap_err().to_string();
+    assert!(message.contains("at most 4194304"), "{message}");
+}
+
+#[test]
 fn containers_are_checked() {
     let whole = glb(&file(), &buffer());
     let message = |bytes: &[u8]| parse(bytes, "t").unwrap_err().to_string();

@@ -32,11 +32,18 @@ pub(super) struct Body {
     pub(super) skipped: Tally,
     /// Bytes behind the last element.
     pub(super) left_over: Tally,
+    /// Triangles of all polygons so far.
+    triangles: u64,
+    /// Vertices or triangles at most: a byte of the file may be 40 here.
+    most: u64,
 }
 
 impl Body {
-    pub(super) fn of(header: &Header, rest: &[u8]) -> Result<Self, PlyProblem> {
-        let mut body = Self::default();
+    pub(super) fn of(header: &Header, rest: &[u8], most: u64) -> Result<Self, PlyProblem> {
+        let mut body = Self {
+            most,
+            ..Self::default()
+        };
         let mut values = Values::new(header.encoding, rest);
         for element in &header.elements {
             check_count(header, element, &values)?;
@@ -68,7 +75,8 @@ impl Body {
                 property,
             };
             if property.list.is_some() {
-                let list = at.list(values, *role != Role::None)?;
+                let wanted = (*role != Role::None).then_some(3 * self.most);
+                let list = at.list(values, wanted)?;
                 match role {
                     Role::Face => self.face(&list, &at)?,
                     Role::Strip => self.strip(&list, &at)?,
@@ -77,6 +85,9 @@ impl Body {
             } else {
                 let value = at.value(values)?;
                 if let Role::Axis(axis) = role {
+                    if self.points.len() as u64 >= self.most {
+                        return Err(at.too_much("vertices", self.most));
+                    }
                     point[*axis] = coordinate(value, *axis, self.points.len())?;
                 }
             }
@@ -87,7 +98,17 @@ impl Body {
         Ok(())
     }
 
+    /// Counts triangles before they are kept.
+    fn count(&mut self, triangles: usize, at: &Place<'_>) -> Result<(), PlyProblem> {
+        self.triangles += triangles as u64;
+        if self.triangles > self.most {
+            return Err(at.too_much("triangles", self.most));
+        }
+        Ok(())
+    }
+
     fn face(&mut self, list: &[f64], at: &Place<'_>) -> Result<(), PlyProblem> {
+        self.count(list.len().saturating_sub(2), at)?;
         for value in list {
             self.corners.push(at.index(*value)?);
         }
@@ -115,6 +136,7 @@ impl Body {
                 if a == b || b == c || c == a {
                     continue;
                 }
+                self.count(1, at)?;
                 // Every other triangle of a strip is the other way round.
                 self.corners
                     .extend(if k % 2 == 0 { [a, b, c] } else { [a, c, b] });
@@ -211,8 +233,8 @@ impl Place<'_> {
         value.map_err(|e| self.problem(e))
     }
 
-    /// The values of a list, which are kept if they are `wanted`.
-    fn list(&self, values: &mut Values<'_>, wanted: bool) -> Result<Vec<f64>, PlyProblem> {
+    /// The values of a list, which are kept if so many at most are `wanted`.
+    fn list(&self, values: &mut Values<'_>, wanted: Option<u64>) -> Result<Vec<f64>, PlyProblem> {
         let of = self.property.list.unwrap_or(self.property.scalar);
         let length = values.next(of).map_err(|e| self.problem(e))?;
         if !(0.0..=4294967295.0).contains(&length) || length.fract() != 0.0 {
@@ -223,15 +245,27 @@ impl Place<'_> {
                 length,
             });
         }
+        if let Some(most) = wanted.filter(|most| length as u64 > *most) {
+            return Err(self.too_much("corners of one list", most));
+        }
         // Nothing is set aside for what a length says: the values come or they do not.
         let mut list = Vec::new();
         for _ in 0..length as u64 {
             let value = self.value(values)?;
-            if wanted {
+            if wanted.is_some() {
                 list.push(value);
             }
         }
         Ok(list)
+    }
+
+    fn too_much(&self, what: &'static str, limit: u64) -> PlyProblem {
+        PlyProblem::TooMuch {
+            element: self.element.name.clone(),
+            number: self.number,
+            what,
+            limit,
+        }
     }
 
     fn problem(&self, e: NoValue) -> PlyProblem {

@@ -70,6 +70,20 @@ pub enum PlyProblem {
         /// Bytes left.
         left: usize,
     },
+    /// More than is drawn of one file.
+    #[error(
+        "{element} {number} is more than the {limit} {what} that are drawn of a file; valid is a smaller model"
+    )]
+    TooMuch {
+        /// Name of the element.
+        element: String,
+        /// Its number, from 0.
+        number: u64,
+        /// `vertices`, `triangles` or `corners of one list`.
+        what: &'static str,
+        /// The most that is drawn.
+        limit: u64,
+    },
     /// The data end too early.
     #[error("the data end in {element} {number}, of which the header declares {count}")]
     Truncated {

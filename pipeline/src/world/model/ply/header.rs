@@ -157,7 +157,8 @@ impl Header {
             .iter()
             .filter(|e| !e.is_drawn() && e.count > 0)
         {
-            tally.add_many(element.count as usize, || format!("'{}'", element.name));
+            let count = usize::try_from(element.count).unwrap_or(usize::MAX);
+            tally.add_many(count, || format!("'{}'", element.name));
         }
         tally
     }

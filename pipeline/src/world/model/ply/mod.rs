@@ -16,6 +16,7 @@ mod values;
 
 use std::path::Path;
 
+use super::piece::MOST;
 use crate::world::faces::{Triangles, compact, first_equals};
 use crate::world::files::{self, FileError, SceneFolder};
 use crate::world::shape::Shape;
@@ -65,9 +66,14 @@ fn of_bytes(bytes: Result<Vec<u8>, FileError>, path: &Path) -> Result<PlyMesh, P
 /// # Errors
 /// See [`PlyProblem`].
 pub fn parse(bytes: &[u8], file: &str) -> Result<PlyMesh, PlyError> {
+    parse_at_most(bytes, file, MOST)
+}
+
+/// The same of a file with at most so many vertices and triangles.
+fn parse_at_most(bytes: &[u8], file: &str, most: u64) -> Result<PlyMesh, PlyError> {
     let read = || {
         let (header, rest) = Header::of(bytes)?;
-        let body = Body::of(&header, rest)?;
+        let body = Body::of(&header, rest, most)?;
         mesh(&header, &body)
     };
     read().map_err(|problem| PlyError::new(file, problem))

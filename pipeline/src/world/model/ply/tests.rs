@@ -255,11 +255,64 @@ fn counts_without_data_take_no_memory() {
         "element nothing 18446744073709551615\nelement face 4",
     );
     same(none, &["ignored-elements"]);
+    // The sum of both is more than a count holds.
+    let twice = text().replace(
+        "element face 4",
+        "element a 9223372036854775808\nelement b 9223372036854775808\nelement face 4",
+    );
+    let mesh = read(twice).unwrap();
+    assert_eq!(codes(&mesh), ["ignored-elements"]);
+    assert_eq!(mesh.warnings[0].count, usize::MAX);
     let list = format!(
-        "{}{POINTS}4294967295 0 1 2",
+        "{}{POINTS}20000000 0 1 2",
         HEAD.replace("uchar int", "uint int")
     );
-    assert!(message(list.replace("face 4", "face 1")).contains("the data end in face 0"));
+    let list = list.replace("face 4", "face 1");
+    assert!(message(&list).contains("the data end in face 0"));
+    let longer = list.replace("20000000", "4294967295");
+    assert!(message(longer).contains("25165824 corners of one list"));
+}
+
+#[test]
+fn more_than_is_drawn_is_refused_before_it_is_kept() {
+    let problem = |text: &str, most| {
+        let read = parse_at_most(text.as_bytes(), "t.ply", most);
+        read.err().map(|e| e.to_string())
+    };
+    let whole = text();
+    assert_eq!(problem(&whole, 4), None);
+    let vertices = problem(&whole, 3).unwrap();
+    assert!(
+        vertices.contains("vertex 3") && vertices.contains("the 3 vertices"),
+        "{vertices}"
+    );
+    let faces = HEAD.replace("face 4", "face 3");
+    // Two triangles each.
+    let polygons = format!("{faces}{POINTS}4 0 1 2 3\n4 0 2 1 3\n4 0 1 3 2\n");
+    assert_eq!(problem(&polygons, 6), None);
+    let triangles = problem(&polygons, 5).unwrap();
+    assert!(
+        triangles.contains("face 2") && triangles.contains("the 5 triangles"),
+        "{triangles}"
+    );
+    let strips = HEAD.replace("face 4", "tristrips 1");
+    let strip = format!("{strips}{POINTS}7 0 1 2 3 0 1 2\n");
+    assert_eq!(problem(&strip, 5), None);
+    let triangles = problem(&strip, 4).unwrap();
+    assert!(
+        triangles.contains("tristrips 0") && triangles.contains("the 4 triangles"),
+        "{triangles}"
+    );
+    let long = format!("{strips}{POINTS}13 0 1 2 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1\n");
+    assert_eq!(problem(&long, 5), None);
+    let corners = problem(&long, 4).unwrap();
+    assert!(corners.contains("the 12 corners of one list"), "{corners}");
+    // What is not used may be of any length.
+    let other = whole.replace(
+        "end_header",
+        "element other 1\nproperty list uchar int a\nend_header",
+    ) + "20 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n";
+    assert_eq!(problem(&other, 4), None);
 }
 
 proptest! {

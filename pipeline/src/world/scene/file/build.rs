@@ -220,6 +220,7 @@ fn object(
     let mut object = Object::new(name, mesh, material(source, table.material.as_ref())?);
     object.casts = table.casts.unwrap_or(!table.mesh.is_sheet());
     object.receives = table.receives.unwrap_or(true);
+    object.open = table.open.unwrap_or(false);
     object.rest = rest.and_then(|shape| place.rest(shape, Shading::Crease { degrees }));
     if table.material.is_none() {
         object.parts = read.parts;

@@ -190,6 +190,7 @@ fn what_the_reader_refuses_the_schema_refuses() {
         ("mesh.box = { size = [1, 1, 1] }", "mesh.obj = 3"),
         ("mesh.box", "crease = 181\nmesh.box"),
         ("mesh.box", "casts = 1\nmesh.box"),
+        ("mesh.box", "open = 1\nmesh.box"),
         ("[camera]", "size = [0, 5]\n[camera]"),
     ] {
         let text = good.replacen(from, to, 1);

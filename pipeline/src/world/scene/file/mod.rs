@@ -32,6 +32,7 @@
 //! material = { albedo = [0.7, 0.4, 0.2], specular = [0.3, 0.3, 0.3], shininess = 30.0 }
 //! casts = true
 //! receives = true
+//! open = false                    # may cast though its mesh is not closed
 //! [objects.motion]                # optional; added to rotate and translate
 //! velocity = [0.2, 0.0, 0.0]      # per second
 //! spin = [0.0, 90.0, 0.0]         # degrees per second

@@ -96,6 +96,7 @@ pub(super) struct ObjectTable {
     pub(super) material: Option<MaterialTable>,
     pub(super) casts: Option<bool>,
     pub(super) receives: Option<bool>,
+    pub(super) open: Option<bool>,
     pub(super) motion: Option<MotionTable>,
 }
 

@@ -63,7 +63,7 @@ fn outputs_are_asked_for_alike() {
 fn exports_do_not_replace_what_they_are_made_of() {
     let folder = Folder::new("export-onto-itself");
     let toml = "[camera]\neye = [0, 2, 5]\ntarget = [0, 0, 0]\n\
-        [[lights]]\nshape.point = [0, 4, 0]\n[[objects]]\nmesh.plane = { half = 2 }\n";
+        [[lights]]\nshape.point = { position = [0, 4, 0] }\n[[objects]]\nmesh.plane = { half = 2 }\n";
     folder.write("mine.toml", toml);
     folder
         .gnomon("export mine.toml --out .")

@@ -72,8 +72,13 @@ pub(crate) fn print_summary(text: &str, is_taken: bool) -> Result<(), CliError> 
     if is_quiet() {
         return Ok(());
     }
+    print_asked(text, is_taken)
+}
+
+/// The same where it is what was asked for: quiet or not.
+pub(crate) fn print_asked(text: &str, is_taken: bool) -> Result<(), CliError> {
     if is_taken {
-        // A summary that nobody can read is not worth failing for.
+        // Words that nobody can read are not worth failing for.
         let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
         return Ok(());
     }

@@ -1,5 +1,7 @@
 //! NumPy's array format, version 1.0.
 
+use gnomon_raster::MAX_TEXTURE_SIZE;
+
 /// A two-dimensional float32 array, row by row; `size` is (width, height).
 pub(crate) fn encode(size: [u32; 2], values: &[f32]) -> Vec<u8> {
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
@@ -65,6 +67,12 @@ pub(crate) fn decode(file: &[u8]) -> Result<Array, String> {
         Some(&[h, w, c]) => (h, w, c as usize),
         _ => return Err(format!("has the shape ({shape}); {VALID}")),
     };
+    let valid = 1..=MAX_TEXTURE_SIZE;
+    if !valid.contains(&height) || !valid.contains(&width) || !(1..=4).contains(&channels) {
+        return Err(format!(
+            "has the shape ({shape}); sides are from 1 to {MAX_TEXTURE_SIZE}, channels from 1 to 4"
+        ));
+    }
     let read = reader(kind).ok_or_else(|| format!("is of '{kind}'; {VALID}"))?;
     let count = u128::from(height) * u128::from(width) * channels as u128;
     if count * read.bytes as u128 != data.len() as u128 {
@@ -73,7 +81,11 @@ pub(crate) fn decode(file: &[u8]) -> Result<Array, String> {
             "has {had} bytes of data, and the shape ({shape}) of '{kind}'"
         ));
     }
-    let values = data.chunks_exact(read.bytes).map(read.value).collect();
+    let mut values = Vec::new();
+    if values.try_reserve_exact(count as usize).is_err() {
+        return Err(format!("has {count} numbers, for which memory is short"));
+    }
+    values.extend(data.chunks_exact(read.bytes).map(read.value));
     let size = [width, height];
     Ok(Array {
         size,
@@ -159,6 +171,7 @@ mod tests {
         assert!(refused(&with("<f4", "<i4")).contains("'<i4'"));
         assert!(refused(&with("False", "True ")).contains("C order"));
         assert!(refused(&with("(2, 2)", "(4,)  ")).contains("(4,)"));
+        assert!(refused(&with("(2, 2)", "(0, 2)")).contains("from 1 to"));
         assert!(refused(&with("(2, 2)", "(2, 3)")).contains("16 bytes of data"));
     }
 

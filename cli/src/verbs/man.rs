@@ -34,7 +34,7 @@ pub(crate) fn run(args: &ManArgs) -> Result<(), CliError> {
     }
     batch.commit()?;
     let (count, folder) = (pages.len(), args.folder.display());
-    output::print(&format!("wrote {count} pages to {folder}\n"))
+    output::print_summary(&format!("wrote {count} pages to {folder}\n"), false)
 }
 
 /// Names and contents, the program's own first.

@@ -52,7 +52,28 @@ fn outputs_are_asked_for_alike() {
         folder.gnomon(&compare).fine();
         let picture = format!("{number}/cylinder-compare.png");
         assert!(folder.path(&picture).is_file());
+        let export = format!("export cylinder --size 20x15 {flag} {number}");
+        folder.gnomon(&export).fine();
+        assert!(folder.path(&format!("{number}/cylinder.glb")).is_file());
     }
+}
+
+/// The scene that is exported is none of the files that are written.
+#[test]
+fn exports_do_not_replace_what_they_are_made_of() {
+    let folder = Folder::new("export-onto-itself");
+    let toml = "[camera]\neye = [0, 2, 5]\ntarget = [0, 0, 0]\n\
+        [[lights]]\nshape.point = { position = [0, 4, 0] }\n[[objects]]\nmesh.plane = { half = 2 }\n";
+    folder.write("mine.toml", toml);
+    folder
+        .gnomon("export mine.toml --out .")
+        .refused(&["mine.toml", "another folder"]);
+    assert_eq!(
+        std::fs::read_to_string(folder.path("mine.toml")).unwrap(),
+        toml
+    );
+    folder.gnomon("export mine.toml --out other").fine();
+    folder.gnomon("render other/mine.toml --size 20x15").fine();
 }
 
 /// Four techniques where none is named, and those that take the light for `all`.

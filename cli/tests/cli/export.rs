@@ -149,6 +149,8 @@ fn renders_are_held_against_earlier_ones() {
         "{}",
         same.stdout()
     );
+    let quiet = folder.gnomon(&format!("{line} --set method=zfail --expect b.json -q"));
+    assert!(quiet.code() == 1 && quiet.stdout().contains("method"));
     let other = folder.gnomon(&format!("{line} --set method=zfail --expect b.json"));
     assert_eq!(other.code(), 1);
     let text = other.stdout();

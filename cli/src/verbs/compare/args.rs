@@ -28,10 +28,10 @@ pub(crate) struct CompareArgs {
     /// Somebody else's image of the scene instead of techniques: visibility as .npy
     /// (height, width) or gray .png, or a picture as .npy (height, width, 3) or .exr of
     /// linear RGB, or .png of sRGB. What differs, where, and on which side of the truth
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["techniques", "settings", "env", "csv"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["techniques", "settings", "env", "csv", "repeat"])]
     pub(crate) against: Option<PathBuf>,
     /// The truth for --against, visibility as .npy (height, width) [default: --reference]
-    #[arg(long, value_name = "FILE.npy", requires = "against", conflicts_with_all = ["techniques", "settings", "env"])]
+    #[arg(long, value_name = "FILE.npy", requires = "against", conflicts_with_all = ["techniques", "settings", "env", "reference"])]
     pub(crate) truth: Option<PathBuf>,
     /// A parameter of all entries of a technique; may be repeated
     #[arg(long = "set", value_name = "TECHNIQUE.KEY=VALUE", value_parser = parse_technique_setting)]
@@ -45,7 +45,8 @@ pub(crate) struct CompareArgs {
     /// Image size in pixels [default: the scene file's, or else 640x480]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
-    /// Folder for the picture, SCENE-compare.png, and for the truth, oracle-cache/
+    /// Folder for the picture, SCENE-compare.png or SCENE-against.png, and for the truth,
+    /// oracle-cache/
     #[arg(
         short = 'o',
         long,

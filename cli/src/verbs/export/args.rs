@@ -20,7 +20,13 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
     /// Folder for the files
-    #[arg(long, value_name = "DIR", default_value = "out/export")]
+    #[arg(
+        short = 'o',
+        long,
+        alias = "out",
+        value_name = "DIR",
+        default_value = "out/export"
+    )]
     pub(crate) out_dir: PathBuf,
     /// Formats of the meshes
     #[arg(long, value_name = "FORMAT", value_enum, value_delimiter = ',', default_values_t = [Format::Gltf, Format::Obj])]

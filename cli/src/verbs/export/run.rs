@@ -1,5 +1,7 @@
 //! From the command line to files.
 
+use std::path::Path;
+
 use gnomon_pipeline::world::export::{ExportFormat, export};
 use serde::Serialize;
 
@@ -38,6 +40,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
     let mut files = Vec::new();
     for (name, bytes) in &exported.files {
         let path = args.out_dir.join(name);
+        check_not_the_scene(args, &path)?;
         batch.stage(&path, bytes)?;
         files.push(FileDocument {
             kind: "export",
@@ -69,4 +72,25 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
         })?;
     }
     output::print_summary(&text, args.json)
+}
+
+/// A file that was read to make the export is not replaced by it.
+fn check_not_the_scene(args: &ExportArgs, path: &Path) -> Result<(), CliError> {
+    let given = Path::new(&args.scene.scene);
+    let (Ok(given), Ok(target)) = (given.canonicalize(), path.canonicalize()) else {
+        return Ok(());
+    };
+    // Models and materials of a scene lie beside it, under names like those of the export.
+    let is_beside = given.parent() == target.parent() && given.file_stem() == target.file_stem();
+    match given == target || is_beside {
+        true => Err(CliError::Flag {
+            flag: "--out-dir",
+            value: args.out_dir.display().to_string(),
+            valid: format!(
+                "{} would be replaced, beside the scene that is exported; give another folder",
+                path.display()
+            ),
+        }),
+        false => Ok(()),
+    }
 }

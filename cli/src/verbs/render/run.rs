@@ -41,13 +41,14 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     if args.draws {
         text += &describe_draws(&done);
     }
-    let mut same = true;
-    if let Some((differences, baseline)) = found {
-        text += &format!("\n{}", baseline.tell(&differences));
-        same = differences.is_empty();
-    }
     let is_taken = args.json || output::is_stdout(&job.out);
     output::print_summary(&text, is_taken)?;
+    let mut same = true;
+    if let Some((differences, baseline)) = found {
+        // Asked for, whether or not the summary is.
+        output::print_asked(&baseline.tell(&differences), is_taken)?;
+        same = differences.is_empty();
+    }
     if same { Ok(()) } else { Err(CliError::Differs) }
 }
 

@@ -34,6 +34,8 @@ pub(super) struct Document<'a> {
     compared: usize,
     left_out: Object<usize>,
     worst: Vec<WorstDocument>,
+    /// Of the scene, and of the truth that is kept.
+    pub(super) warnings: &'a [String],
     files: &'a [FileDocument],
 }
 
@@ -93,6 +95,7 @@ impl<'a> Document<'a> {
             compared: found.pixels.compared,
             left_out: count_by_reason(&found.pixels),
             worst: found.worst.iter().map(WorstDocument::from).collect(),
+            warnings: &[],
             files,
         }
     }

@@ -49,16 +49,23 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
         kind: "comparison",
         path: job.out.display().to_string(),
     }];
-    let document = document::Document::new(args, &job, &theirs, &found, &files);
+    let warnings = warnings(&done, &reference);
+    let mut document = document::Document::new(args, &job, &theirs, &found, &files);
+    document.warnings = &warnings;
     if args.json {
         output::print_json(&document)?;
     }
-    let warnings = done
-        .warnings
-        .iter()
-        .map(|w| format!("warning: {}: {}\n", w.code, w.message));
-    let text = document.text() + &warnings.collect::<String>();
+    let told = warnings.iter().map(|w| format!("warning: {w}\n"));
+    let text = document.text() + &told.collect::<String>();
     output::print_summary(&text, args.json)
+}
+
+/// What was found amiss with the scene, and with the truth that is kept.
+fn warnings(done: &Rendered, reference: &Reference) -> Vec<String> {
+    let scene = done.warnings.iter();
+    let scene = scene.map(|w| format!("{}: {}", w.code, w.message));
+    let truth = reference.warnings.iter().map(ToString::to_string);
+    scene.chain(truth).collect()
 }
 
 fn check_size(flag: &'static str, given: Option<[u32; 2]>, file: [u32; 2]) -> Result<(), CliError> {

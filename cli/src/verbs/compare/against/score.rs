@@ -6,8 +6,8 @@ use gnomon_pipeline::truth::metrics::visibility::{ErrorSummary, VisibilityError}
 use gnomon_pipeline::truth::metrics::{MetricError, Picture, rgb_of};
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 
-/// Least error that is told as one: a step of 8 bits.
-pub(super) const STEP: f64 = 1.0 / 255.0;
+/// Least error that is told as one: a step of 8 bits, of which rounding may take a little.
+pub(super) const STEP: f64 = (1.0 - 1e-6) / 255.0;
 
 /// Pixels that are named.
 const NAMED: usize = 8;
@@ -121,6 +121,19 @@ fn worst(width: u32, values: &[[f64; 2]]) -> Vec<Worst> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As shares of 255 in f64, and as files of f32 have them.
+    #[test]
+    fn each_step_of_eight_bits_is_an_error() {
+        for step in 1..=255_u8 {
+            let [low, high] = [step - 1, step].map(|v| f64::from(v) / 255.0);
+            let [coarse, fine] = [step - 1, step].map(|v| f64::from(f32::from(v) / 255.0));
+            for pair in [[low, high], [high, low], [low, fine], [high, coarse]] {
+                assert_eq!(worst(1, &[pair]).len(), 1, "{pair:?}");
+            }
+            assert!(worst(1, &[[low, low + 0.9 / 255.0]]).is_empty());
+        }
+    }
 
     #[test]
     fn the_worst_pixels_come_first_and_have_their_places() {

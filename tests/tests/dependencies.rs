@@ -42,6 +42,7 @@ const LAYERS: &[(&str, &str, &[&str])] = &[
             "gnomon-pipeline",
             "gnomon-claims",
             "gnomon-traces",
+            "gnomon-golden",
         ],
     ),
     (

@@ -336,8 +336,11 @@ const OPEN: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
 fn what_a_technique_refuses_is_a_row_with_the_reason() {
     let folder = Folder::new("bench-refused");
     folder.write("open.obj", OPEN);
+    let scene = "[camera]\neye = [2, 2, 5]\ntarget = [0, 0, 0]\n[[lights]]\n\
+        shape.point = { position = [0, 4, 0] }\n[[objects]]\nmesh.model = \"open.obj\"\n";
+    folder.write("open.toml", scene);
     let run = folder.gnomon(
-        "bench open.obj --size 16x12 --threads 1 --techniques unshadowed,shadow-volumes:open-casters=refuse --out-dir b --json",
+        "bench open.toml --size 16x12 --threads 1 --techniques unshadowed,shadow-volumes --out-dir b --json",
     );
     let run_text = run.stderr();
     let doc = run.json();

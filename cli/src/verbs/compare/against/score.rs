@@ -7,7 +7,7 @@ use gnomon_pipeline::truth::metrics::{MetricError, Picture, rgb_of};
 use gnomon_pipeline::truth::oracle::area::LightRegion;
 
 /// Least error that is told as one: a step of 8 bits, of which rounding may take a little.
-pub(super) const STEP: f64 = (1.0 - 1e-6) / 255.0;
+pub(super) const STEP: f64 = (1.0 - 1e-4) / 255.0;
 
 /// Pixels that are named.
 const NAMED: usize = 8;

@@ -272,7 +272,10 @@ mod tests {
     #[test]
     fn it_conforms() {
         let report = gnomon::conformance::check(&BallShadows).unwrap();
-        assert!(report.frames > 10 && report.refused.is_empty(), "{report:?}");
+        assert!(
+            report.frames > 10 && report.refused.is_empty(),
+            "{report:?}"
+        );
         assert_eq!(report.unnamed.len(), 1, "{:?}", report.unnamed);
     }
 

@@ -15,7 +15,7 @@
 //! }));
 //! let drawn = frame.build().draw(GpuConfig::default())?;
 //! assert_eq!(drawn.output("color")?.read_rgba8()?[64 * 32 + 32], [255, 128, 0, 255]);
-//! let counted = drawn.report.totals();
+//! let counted = drawn.report.passes[0].totals();
 //! assert_eq!(counted.traffic.color[0].write_bytes, 4 * counted.fragments.written);
 //! # Ok::<(), Error>(())
 //! ```

@@ -304,3 +304,30 @@ fn bits<L: Lanes>(l: L, v: U32<L>) -> [F32<L>; 4] {
     let zero = F32::splat(l, 0.0);
     [v.to_f32_bits(), zero, zero, zero]
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::shader::ScalarFragmentOutput;
+    use crate::{FrameBuilder, GpuConfig, TriangleDraw};
+
+    /// Look-ups only need the size of changes, so none of them tells the sign.
+    #[test]
+    fn derivatives_are_to_the_right_and_downwards() {
+        let everywhere = [[-1.0, -1.0, 0.5], [3.0, -1.0, 0.5], [-1.0, 3.0, 0.5]];
+        let draw = TriangleDraw::new("everywhere", &everywhere).shade(|f| {
+            let right = f.ddx(|f| f.x as f32 * 0.25);
+            let down = f.ddy(|f| f.y as f32 * 0.5);
+            let across = f.ddx(|f| f.y as f32) + f.ddy(|f| f.x as f32);
+            ScalarFragmentOutput::color([right, down, across, 1.0])
+        });
+        let mut frame = FrameBuilder::new(12, 8).expect("a size");
+        let frame = frame.draw(draw).build();
+        let config = GpuConfig {
+            threads: 1,
+            ..GpuConfig::default()
+        };
+        let drawn = frame.draw(config).expect("a frame");
+        let pixels = drawn.read_rgba8("color").expect("colour");
+        assert!(pixels.iter().all(|p| *p == [64, 128, 0, 255]), "{pixels:?}");
+    }
+}

@@ -3,6 +3,7 @@
 //! * [`transform`]: from world to clip space, for scene geometry and shadow
 //!   volumes alike
 //! * [`backprojection`]: texels of light views projected on the light
+//! * [`box_resolve`]: means of samples of a pixel
 //! * [`cones`]: shadows of spheres from the patches of a light view
 //! * [`coverage`], [`coverage_table`]: how much of an area light an edge covers
 //! * [`deferred`]: light of vertices under an environment, less what occlusion maps take
@@ -18,7 +19,8 @@
 //! * [`soft_volumes`]: soft shadow volumes on a float visibility buffer
 //! * [`split_volumes`]: the same split over 8-bit buffers, and silhouettes combined
 //! * [`visibility_buffers`]: paper III's float buffer without blending, and its 8-bit one
-//! * [`surface`]: ambient, Lambert and Phong shading of surfaces
+//! * [`surface`]: ambient, Lambert and Phong shading of surfaces; [`textured`]: with a base
+//!   colour from a texture
 //!
 //! Colours are linear light. A shader is a struct of its uniforms; the frame
 //! that uses it decides targets, blending and tests.
@@ -29,6 +31,7 @@
 
 pub mod backprojection;
 mod bounded;
+pub mod box_resolve;
 pub mod cones;
 pub mod convolution;
 pub mod coverage;
@@ -45,6 +48,7 @@ pub mod smoothies;
 pub mod soft_volumes;
 pub mod split_volumes;
 pub mod surface;
+pub mod textured;
 pub mod transform;
 mod vector;
 pub mod visibility_buffers;
@@ -108,6 +112,7 @@ stages! {
         deferred::radiance::Reflections: "deferred.reflections" 1,
         deferred::radiance::Corners: "deferred.corners" 1,
         deferred::obscured::Transported: "deferred.transported" 1,
+        textured::TexturedSurfaces: "textured.surfaces" 1,
     }
     fragment {
         surface::Constant: "surface.constant" 1,
@@ -189,6 +194,15 @@ stages! {
         shadow_maps::Shadow<moments::filter::FixedKernel>: "moments.fixed-kernel" 1,
         shadow_maps::Shadow<moments::filter::LightKernel>: "moments.light-kernel" 1,
         shadow_maps::Shadow<moments::variance_soft::VarianceSoft>: "moments.variance-soft" 1,
+        textured::TexturedAmbient: "textured.ambient" 1,
+        textured::TexturedLambert: "textured.lambert" 1,
+        textured::TexturedPhong: "textured.phong" 1,
+        surface::Shadowed<textured::TexturedLambert>: "textured.shadowed-lambert" 1,
+        surface::Shadowed<textured::TexturedPhong>: "textured.shadowed-phong" 1,
+        surface::ShadowedByBytes<textured::TexturedLambert>: "textured.shadowed-by-bytes-lambert" 1,
+        surface::ShadowedByBytes<textured::TexturedPhong>: "textured.shadowed-by-bytes-phong" 1,
+        deferred::lit::TexturedLessObscured: "textured.less-obscured" 1,
+        box_resolve::BoxResolve: "box-resolve" 1,
     }
 }
 
@@ -199,7 +213,7 @@ mod tests {
     #[test]
     fn every_shader_has_a_name_of_its_own() {
         let table = all().unwrap();
-        assert_eq!(table.vertex_shaders().count(), 13);
-        assert_eq!(table.fragment_shaders().count(), 71);
+        assert_eq!(table.vertex_shaders().count(), 14);
+        assert_eq!(table.fragment_shaders().count(), 80);
     }
 }

@@ -120,14 +120,14 @@ uniforms!(LeaningAmbient {
     blue
 });
 
-impl FragmentShader for LeaningAmbient {
+impl LeaningAmbient {
     #[inline(always)]
-    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+    pub(crate) fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3] {
         let (normal, _) = inputs(f);
         let least = F32::splat(l, f32::MIN_POSITIVE);
         let scale = F32::splat(l, facing(f)) / normal.dot(normal).max(least).sqrt();
         let slopes = [self.red, self.green, self.blue];
-        let [r, g, b] = each3(
+        each3(
             #[inline(always)]
             |c| {
                 let [x, y, z] = slopes[c];
@@ -135,7 +135,14 @@ impl FragmentShader for LeaningAmbient {
                 let lean = (nx * x + ny * y + nz * z) * scale;
                 (lean + F32::splat(l, self.even[c])).max(F32::splat(l, 0.0))
             },
-        );
+        )
+    }
+}
+
+impl FragmentShader for LeaningAmbient {
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let [r, g, b] = self.light(l, f);
         f.set_color(0, [r, g, b, F32::splat(l, 0.0)]);
     }
 }
@@ -197,8 +204,13 @@ impl FragmentShader for FacetValue {
 
 /// Diffuse and specular light of a surface, linear RGB.
 pub trait Reflection: Send + Sync {
+    /// How many textures it reads, behind those of whoever dims it.
+    fn textures(&self) -> usize {
+        0
+    }
+
     /// The light towards the eye, all of the light source being visible.
-    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3];
+    fn light<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) -> [F32<L>; 3];
 }
 
 /// A surface dimmed by the visibility of the light: texture 0 at the fragment's
@@ -219,7 +231,7 @@ uniforms!(Shadowed<S> { surface, scale, offset, coloured });
 impl<S: Reflection> FragmentShader for Shadowed<S> {
     fn outputs(&self) -> FragmentOutputs {
         FragmentOutputs {
-            textures: 1,
+            textures: 1 + self.surface.textures(),
             ..FragmentOutputs::default()
         }
     }
@@ -254,7 +266,7 @@ uniforms!(ShadowedByBytes<S> { surface, scale });
 impl<S: Reflection> FragmentShader for ShadowedByBytes<S> {
     fn outputs(&self) -> FragmentOutputs {
         FragmentOutputs {
-            textures: 1,
+            textures: 1 + self.surface.textures(),
             ..FragmentOutputs::default()
         }
     }
@@ -291,7 +303,7 @@ uniforms!(Lambert { diffuse, light });
 
 impl Reflection for Lambert {
     #[inline(always)]
-    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3] {
+    fn light<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) -> [F32<L>; 3] {
         let (normal, position) = inputs(f);
         let to_light = position.towards(self.light);
         let cosine = cosine(normal, to_light, facing(f)).max(F32::splat(l, 0.0));
@@ -331,9 +343,10 @@ uniforms!(Phong {
     eye
 });
 
-impl Reflection for Phong {
+impl Phong {
+    /// Factors of diffuse and of specular light.
     #[inline(always)]
-    fn light<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> [F32<L>; 3] {
+    pub(crate) fn shares<L: Lanes>(&self, l: L, f: &Fragment<'_, L>) -> (F32<L>, F32<L>) {
         let (normal, position) = inputs(f);
         let [x, y, z] = self.eye;
         let (to_light, to_eye) = (
@@ -349,6 +362,14 @@ impl Reflection for Phong {
         let highlight = n_l
             .gt(zero)
             .select_f32(power(mirrored, self.shininess), zero);
+        (diffuse, highlight)
+    }
+}
+
+impl Reflection for Phong {
+    #[inline(always)]
+    fn light<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) -> [F32<L>; 3] {
+        let (diffuse, highlight) = self.shares(l, f);
         each3(
             #[inline(always)]
             |i| diffuse * self.lambert.diffuse[i] + highlight * self.specular[i],

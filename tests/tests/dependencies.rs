@@ -191,8 +191,8 @@ fn json_of_the_pipeline_is_that_of_models() {
     }
 }
 
-/// Environment maps and images of lights are input: a module of the pipeline decodes
-/// each, and none encodes pictures.
+/// Environment maps, images of lights and textures are input: a module of the pipeline
+/// decodes each, and none encodes pictures.
 #[test]
 fn pictures_are_decoded_where_they_are_read() {
     // A module of the oracle is called image, too, and used with `pub use`.
@@ -200,8 +200,8 @@ fn pictures_are_decoded_where_they_are_read() {
     let users = lines_where(&root().join("pipeline/src"), uses_it);
     assert!(!users.is_empty());
     for (path, line) in users {
-        let module =
-            |at: &Path| at.ends_with("environment/read") || at.ends_with("light_image/read");
+        let places = ["environment/read", "light_image/read", "texture/decode"];
+        let module = |at: &Path| places.iter().any(|place| at.ends_with(place));
         let only = module(&path.with_extension("")) || path.parent().is_some_and(module);
         assert!(only, "{}: {line}", path.display());
     }

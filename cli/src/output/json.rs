@@ -39,6 +39,9 @@ pub(crate) struct RenderDocument {
     simd: &'static str,
     skip: bool,
     repeat: u32,
+    /// Samples along a side of a pixel; only where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    supersample: Option<u32>,
     hash: Hashes,
     time_ms: Times,
     passes: Vec<PassDocument>,
@@ -63,6 +66,7 @@ pub(crate) struct RenderInputs<'a> {
     pub(crate) params: &'a Params,
     pub(crate) gpu: GpuConfig,
     pub(crate) repeat: u32,
+    pub(crate) supersample: u32,
 }
 
 /// A file that was written.
@@ -220,6 +224,7 @@ impl RenderDocument {
             simd: job.gpu.simd.name(),
             skip: job.gpu.skip,
             repeat: job.repeat,
+            supersample: (job.supersample > 1).then_some(job.supersample),
             hash: Hashes::of(done),
             time_ms: Times {
                 build: done.build_ms,

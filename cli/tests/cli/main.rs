@@ -23,6 +23,7 @@ mod same_bits;
 mod show;
 mod stress;
 mod sweep;
+mod textures;
 mod traces;
 mod traffic;
 mod tune;

@@ -306,3 +306,29 @@ fn eyes_and_lights_can_be_given() {
             .refused(&[part]);
     }
 }
+
+#[test]
+fn supersampled_pictures_are_told_apart_and_counted() {
+    let folder = Folder::new("supersample");
+    let doc = folder
+        .gnomon("render cylinder --size 32x24 --supersample 3 --json")
+        .json();
+    assert_eq!((&doc["size"], &doc["supersample"]), (&serde_json::json!([32, 24]), &3.into()));
+    let passes = doc["passes"].as_array().unwrap();
+    assert_eq!(passes.last().unwrap()["name"], "resolve samples");
+    let name = "out/cylinder-shadow-volumes-supersample-3.png";
+    assert_eq!(doc["files"][0]["path"], name);
+    assert_eq!(folder.pixels(name).len(), 32 * 24 * 4);
+    let plain = folder.gnomon("render cylinder --size 32x24 --json").json();
+    assert!(plain.get("supersample").is_none());
+    assert_ne!(plain["hash"]["color"], doc["hash"]["color"]);
+    let one = folder
+        .gnomon("render cylinder --size 32x24 --supersample 1 --json")
+        .json();
+    assert_eq!((&one["hash"], &one["totals"]), (&plain["hash"], &plain["totals"]));
+    let run = |flags: &str| folder.gnomon(&format!("render cylinder {flags}"));
+    run("--supersample 9").refused(&["--supersample", "1..=8"]);
+    run("--supersample 0").refused(&["--supersample"]);
+    run("--size 2000x100 --supersample 5").refused(&["--supersample", "5", "1 to 4"]);
+    run("--supersample 2 --overlay stencil").refused(&["--supersample", "overlays"]);
+}

@@ -5,6 +5,7 @@ pub mod comparison;
 pub mod heat;
 pub mod render;
 pub mod stress;
+mod supersample;
 pub mod tile_traffic;
 pub mod visibility_sum;
 pub mod wedge_work;

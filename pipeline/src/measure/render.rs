@@ -8,6 +8,8 @@ use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource, memory};
 use gnomon_shaders::line_samples::NEGATIVE_DEPTH;
 use thiserror::Error;
 
+pub use super::supersample::MAX_SUPERSAMPLE;
+use super::supersample::{each_pixel, mean, resolved};
 use crate::technique::{
     CasterUse, Figure, Frame, KeptPictures, Params, PictureToKeep, Roles, Technique,
     TechniqueError, VisibilityOutput, Warning,
@@ -129,8 +131,25 @@ pub fn render(
     params: &Params,
     settings: &RenderSettings,
 ) -> Result<Rendered, RenderError> {
-    let build = || technique.frame(scene, settings.size, params);
-    Ok(run(scene, technique, params, settings, build)?.0)
+    render_supersampled(scene, technique, params, settings, 1)
+}
+
+/// The same from `side` × `side` samples of each pixel, up to [`MAX_SUPERSAMPLE`]: colours are
+/// their mean in linear light, resolved by a pass of the frame; visibility is the mean of
+/// samples that show a surface, depth the nearest, stencil that of the first sample. One
+/// sample is [`render`], to the bit.
+///
+/// # Errors
+/// As [`render`]; the samples of a picture have limits as a picture has.
+pub fn render_supersampled(
+    scene: &Scene,
+    technique: &dyn Technique,
+    params: &Params,
+    settings: &RenderSettings,
+    side: u32,
+) -> Result<Rendered, RenderError> {
+    let build = |size| technique.frame(scene, size, params);
+    Ok(run(scene, technique, params, settings, side, build)?.0)
 }
 
 /// Renders the next frame of an animation: what the frame before left in `kept` is not
@@ -146,8 +165,22 @@ pub fn render_next(
     settings: &RenderSettings,
     kept: &mut KeptPictures,
 ) -> Result<Rendered, RenderError> {
-    let build = || technique.frame_after(scene, settings.size, params, kept);
-    let (rendered, left) = run(scene, technique, params, settings, build)?;
+    render_next_supersampled(scene, technique, params, (settings, 1), kept)
+}
+
+/// The same with the picture of [`render_supersampled`], from the number of samples given.
+///
+/// # Errors
+/// As [`render_next`].
+pub fn render_next_supersampled(
+    scene: &Scene,
+    technique: &dyn Technique,
+    params: &Params,
+    (settings, side): (&RenderSettings, u32),
+    kept: &mut KeptPictures,
+) -> Result<Rendered, RenderError> {
+    let build = |size| technique.frame_after(scene, size, params, kept);
+    let (rendered, left) = run(scene, technique, params, settings, side, build)?;
     *kept = left;
     Ok(rendered)
 }
@@ -158,19 +191,25 @@ fn run(
     technique: &dyn Technique,
     params: &Params,
     settings: &RenderSettings,
-    build: impl FnOnce() -> Result<Frame, TechniqueError>,
+    side: u32,
+    build: impl FnOnce([u32; 2]) -> Result<Frame, TechniqueError>,
 ) -> Result<(Rendered, KeptPictures), RenderError> {
+    let side = side.clamp(1, MAX_SUPERSAMPLE);
     let start = Instant::now();
-    let mut frame = build()?;
+    let mut frame = build(settings.size.map(|s| s.saturating_mul(side)))?;
     let build_ms = start.elapsed().as_secs_f64() * 1e3;
     check_roles(technique, &frame)?;
+    if side > 1 {
+        frame = resolved(frame, settings.size, side)?;
+    }
     frame.warnings.extend(params.without_effect(scene));
     let mut gpu = Gpu::new(settings.gpu)?;
     gpu.load(&frame.recording)?;
     let mut times = Times::measure(&mut gpu, &frame, settings.repeat)?;
     times.build = build_ms;
     let left = left_behind(&gpu, &frame.keep)?;
-    Ok((read_back(&gpu, scene, frame, settings.size, times)?, left))
+    let sizes = (settings.size, side);
+    Ok((read_back(&gpu, scene, frame, sizes, times)?, left))
 }
 
 /// The pictures that a frame asks to keep; those of one texture follow one another.
@@ -240,7 +279,7 @@ fn read_back(
     gpu: &Gpu,
     scene: &Scene,
     frame: Frame,
-    size: [u32; 2],
+    (size, side): ([u32; 2], u32),
     times: Times,
 ) -> Result<Rendered, RenderError> {
     let image = Subresource::default();
@@ -254,7 +293,8 @@ fn read_back(
     let encoder = SrgbEncoder::new();
     let labels = times.report.passes.iter().map(|p| p.label.clone());
     let mut warnings = scene.warnings.clone();
-    warnings.extend(scene.view_warnings(size));
+    let samples = size.map(|s| s * side);
+    warnings.extend(scene.view_warnings(samples));
     warnings.extend(frame.warnings);
     warnings.extend(event_warnings(&times.report, &frame.roles));
     let counted = times.report.shader_counts().into_iter();
@@ -262,11 +302,21 @@ fn read_back(
         name: name.to_owned(),
         value: n as f64,
     });
+    let mut visibility = visibility(gpu, frame.outputs.visibility, samples, &depth, &stencil)?;
+    let (mut depth, mut stencil) = (depth, stencil);
+    if side > 1 {
+        let nearest =
+            |s: &mut dyn Iterator<Item = f32>| s.fold(1.0, |a, b| if b < a { b } else { a });
+        let first = |s: &mut dyn Iterator<Item = u8>| s.next().unwrap_or_default();
+        visibility = each_pixel(&visibility, size, side, mean);
+        depth = each_pixel(&depth, size, side, nearest);
+        stencil = each_pixel(&stencil, size, side, first);
+    }
     Ok(Rendered {
         size,
         srgb: pixels(color.iter().map(|t| encoder.encode(t.0)), size)?,
         color: pixels(color.iter().map(|t| [t.0[0], t.0[1], t.0[2]]), size)?,
-        visibility: visibility(gpu, frame.outputs.visibility, size, &depth, &stencil)?,
+        visibility,
         depth,
         stencil,
         build_ms: times.build,

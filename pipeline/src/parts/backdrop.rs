@@ -2,8 +2,7 @@
 //! size, copied to where no surface is.
 
 use gnomon_raster::state::{
-    ColorTargetState, ColorWrites, CompareFunction, DepthState, DepthStencilState, PrimitiveState,
-    Viewport,
+    CompareFunction, DepthState, DepthStencilState, PrimitiveState, Viewport,
 };
 use gnomon_raster::{
     Draw, Format, Recording, RenderPipeline, Subresource, TextureDescriptor, TextureId,
@@ -11,7 +10,7 @@ use gnomon_raster::{
 use gnomon_shaders::soft_volumes::Resolve;
 use gnomon_shaders::transform::FullScreen;
 
-use super::visibility::{binding, full_screen};
+use super::visibility::{binding, first_target, full_screen};
 use crate::technique::TechniqueError;
 use crate::world::scene::Scene;
 
@@ -41,14 +40,6 @@ impl Backdrop {
 
     /// Writes attachment 0 of `attachments` where depth is still the farthest.
     pub(crate) fn draw(&self, attachments: usize) -> Draw {
-        let mut targets = vec![
-            ColorTargetState {
-                write_mask: ColorWrites(0),
-                ..ColorTargetState::OPAQUE
-            };
-            attachments
-        ];
-        targets[0] = ColorTargetState::OPAQUE;
         let pipeline = RenderPipeline {
             label: "backdrop".into(),
             vertex: FullScreen.stage(),
@@ -62,7 +53,7 @@ impl Backdrop {
                 },
                 ..DepthStencilState::default()
             },
-            color_targets: targets,
+            color_targets: first_target(attachments),
         };
         let [width, height] = self.size;
         Draw {

@@ -10,19 +10,22 @@ use gnomon_raster::state::{
     ColorTargetState, CompareFunction, DepthState, DepthStencilState, StencilFaceState,
     StencilOperation, StencilState,
 };
-use gnomon_raster::{Draw, LoadOp, RenderPass, RenderPipeline};
+use gnomon_raster::{Draw, LoadOp, Recording, RenderPass, RenderPipeline};
 use gnomon_shaders::surface::{
     AmbientWithNumber, AmbientWithPosition, Constant, Lambert, LeaningAmbient, Phong,
 };
+use gnomon_shaders::textured::{TexturedAmbient, TexturedSurfaces};
 use gnomon_shaders::transform::{Facets, NumberedFacets, Points, Surfaces};
 
 use super::frame_settings::{FrameSettings, Shading};
+use super::lit_surface::LitSurface;
 use super::surface_draw::SurfaceDraw;
 pub(crate) use super::surface_draw::{clamped, index_buffer};
+use super::surface_textures::SurfaceTextures;
 pub use super::targets::{Targets, label};
 pub use super::view::View;
-use super::visibility::{Positions, VisibilityTexture, attachment, binding};
-use crate::technique::VisibilityOutput;
+use super::visibility::{Positions, VisibilityTexture, attachment, binding, first_target};
+use crate::technique::{TechniqueError, VisibilityOutput};
 use crate::world::mesh::narrow;
 use crate::world::scene::{Material, Object, Scene};
 
@@ -59,21 +62,30 @@ pub struct SceneDraws<'a> {
 }
 
 impl<'a> SceneDraws<'a> {
-    /// Of `scene` in a picture of `size`.
-    pub fn new(scene: &'a Scene, size: [u32; 2], settings: &FrameSettings) -> Self {
+    /// Of `scene` in a picture of `size`; the pictures on its surfaces go to `recording`.
+    ///
+    /// # Errors
+    /// The GPU refuses a texture.
+    pub fn new(
+        scene: &'a Scene,
+        size: [u32; 2],
+        settings: &FrameSettings,
+        recording: &mut Recording,
+    ) -> Result<Self, TechniqueError> {
         let view = View::new(&scene.camera, size);
+        let textures = SurfaceTextures::create(scene, recording)?;
         let drawn = scene
             .objects
             .iter()
             .filter(|o| !o.mesh.triangles().is_empty());
-        Self {
+        Ok(Self {
             scene,
             surfaces: drawn
-                .flat_map(|o| SurfaceDraw::of_object(scene, &view, o))
+                .flat_map(|o| SurfaceDraw::of_object(scene, &view, o, &textures))
                 .collect(),
             view,
             highlights: settings.shading == Shading::Phong,
-        }
+        })
     }
 
     /// What is drawn of the scene, object after object.
@@ -104,7 +116,42 @@ impl<'a> SceneDraws<'a> {
             label: "ambient".into(),
             color: targets.color(LoadOp::Clear([r, g, b, 1.0])),
             depth_stencil: targets.depth_stencil(LoadOp::Clear(1.0), LoadOp::Clear(0)),
-            draws: self.surfaces.iter().map(draw).collect(),
+            draws: (self.surfaces.iter().map(draw))
+                .chain(self.textured_ambient(1))
+                .collect(),
+        }
+    }
+
+    /// Ambient light of surfaces with textures, over what the ambient pass drew of them;
+    /// writes attachment 0 of `attachments`.
+    fn textured_ambient(&self, attachments: usize) -> impl Iterator<Item = Draw> {
+        let dark = self.scene.ambient == [0.0; 3] && self.scene.ambient_slope == [[0.0; 3]; 3];
+        let surfaces = self.surfaces.iter();
+        surfaces.filter(move |_| !dark).filter_map(move |s| {
+            let textured = s.texture.as_ref()?;
+            let light = self.ambient_light(s);
+            let pipeline = RenderPipeline {
+                label: "ambient with textures".into(),
+                vertex: TexturedSurfaces(self.view.clip_from_world).stage(),
+                fragment: Some(TexturedAmbient { light }.stage()),
+                primitive: s.primitive.clone(),
+                depth_stencil: equal_depth(),
+                color_targets: first_target(attachments),
+            };
+            Some(s.draw_textured(pipeline, textured, None))
+        })
+    }
+
+    /// All ambient light that a surface's own colour reflects.
+    fn ambient_light(&self, s: &SurfaceDraw<'_>) -> LeaningAmbient {
+        let albedo = s.material.albedo;
+        let [r, g, b, _] = s.ambient(self.scene.ambient);
+        let of = |c: usize| self.scene.ambient_slope[c].map(|v| v * albedo[c]);
+        LeaningAmbient {
+            even: [r, g, b],
+            red: of(0),
+            green: of(1),
+            blue: of(2),
         }
     }
 
@@ -139,7 +186,8 @@ impl<'a> SceneDraws<'a> {
         let mut pass = self.ambient_pass(targets);
         let cleared = |texture| attachment(texture, LoadOp::Clear([0.0; 4]));
         pass.color.extend(positions.textures().map(cleared));
-        pass.draws = self.surfaces.iter().map(draw).collect();
+        let textured = self.textured_ambient(pass.color.len());
+        pass.draws = self.surfaces.iter().map(draw).chain(textured).collect();
         pass
     }
 
@@ -160,15 +208,7 @@ impl<'a> SceneDraws<'a> {
             return None;
         }
         let draw = |s: &SurfaceDraw<'_>| {
-            let albedo = s.material.albedo;
-            let even = s.ambient(self.scene.ambient);
-            let of = |c: usize| slope[c].map(|v| v * albedo[c]);
-            let shader = LeaningAmbient {
-                even: [even[0], even[1], even[2]],
-                red: of(0),
-                green: of(1),
-                blue: of(2),
-            };
+            let shader = self.ambient_light(s);
             s.draw(RenderPipeline {
                 label: "ambient from directions".into(),
                 vertex: Surfaces(self.view.clip_from_world).stage(),
@@ -182,7 +222,10 @@ impl<'a> SceneDraws<'a> {
             label: "ambient from directions".into(),
             color: targets.color(LoadOp::Load),
             depth_stencil: targets.depth_stencil(LoadOp::Load, LoadOp::Load),
-            draws: self.surfaces.iter().map(draw).collect(),
+            draws: (self.surfaces.iter())
+                .filter(|s| s.texture.is_none())
+                .map(draw)
+                .collect(),
         })
     }
 
@@ -210,7 +253,8 @@ impl<'a> SceneDraws<'a> {
         let mut pass = self.ambient_pass(targets);
         let clear = LoadOp::Clear([0.0; 4]);
         pass.color.push(attachment(positions.texture, clear));
-        pass.draws = self.surfaces.iter().map(draw).collect();
+        let textured = self.textured_ambient(pass.color.len());
+        pass.draws = self.surfaces.iter().map(draw).chain(textured).collect();
         pass
     }
 
@@ -227,16 +271,25 @@ impl<'a> SceneDraws<'a> {
                 LitTest::Visibility(v) if s.object.receives => Some(v),
                 _ => None,
             };
-            let mut draw = s.draw(RenderPipeline {
+            let surface = self.lit_surface(&s.material, light);
+            let mut pipeline = RenderPipeline {
                 label: label.to_owned(),
                 vertex: Surfaces(self.view.clip_from_world).stage(),
-                fragment: Some(self.lit_shader(&s.material, light, visibility)),
+                fragment: Some(surface.shader(visibility)),
                 primitive: s.primitive.clone(),
                 depth_stencil: lit_state(test, s.object.receives),
                 color_targets: vec![ColorTargetState::ADDITIVE],
-            });
-            draw.textures = visibility.iter().map(|v| binding(v.texture)).collect();
-            draw
+            };
+            let before = visibility.iter().map(|v| binding(v.texture));
+            if let Some(textured) = &s.texture {
+                pipeline.vertex = TexturedSurfaces(self.view.clip_from_world).stage();
+                pipeline.fragment = Some(surface.textured_shader(visibility));
+                return s.draw_textured(pipeline, textured, before);
+            }
+            Draw {
+                textures: before.collect(),
+                ..s.draw(pipeline)
+            }
         };
         RenderPass {
             label: label.to_owned(),
@@ -290,12 +343,8 @@ impl<'a> SceneDraws<'a> {
             .collect()
     }
 
-    fn lit_shader(
-        &self,
-        material: &Material,
-        light: usize,
-        visibility: Option<VisibilityTexture>,
-    ) -> FragmentStage {
+    /// What a light does on a material.
+    fn lit_surface(&self, material: &Material, light: usize) -> LitSurface {
         let light = &self.scene.lights[light];
         let coloured = |c: [f32; 3]| [0, 1, 2].map(|i| c[i] * light.colour[i]);
         let lambert = Lambert {
@@ -303,23 +352,14 @@ impl<'a> SceneDraws<'a> {
             light: self.view.light(light.hard()),
         };
         if !self.highlights || material.specular == [0.0; 3] {
-            return match visibility {
-                Some(v) if v.bytes => v.shadowed_by_bytes(lambert).stage(),
-                Some(v) => v.shadowed(lambert).stage(),
-                None => lambert.stage(),
-            };
+            return LitSurface::Lambert(lambert);
         }
-        let phong = Phong {
+        LitSurface::Phong(Phong {
             lambert,
             specular: coloured(material.specular),
             shininess: material.shininess,
             eye: narrow(self.view.eye()),
-        };
-        match visibility {
-            Some(v) if v.bytes => v.shadowed_by_bytes(phong).stage(),
-            Some(v) => v.shadowed(phong).stage(),
-            None => phong.stage(),
-        }
+        })
     }
 }
 

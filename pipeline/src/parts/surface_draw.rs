@@ -11,13 +11,15 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use gnomon_raster::state::PrimitiveState;
-use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, VertexBuffer};
+use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, TextureBinding, VertexBuffer};
 
 use super::far_surface;
+use super::surface_textures::SurfaceTextures;
 use super::surface_vertices::{STRIDE, SurfaceVertices};
 use super::view::View;
 use crate::world::mesh::{narrow, widen};
 use crate::world::scene::{Material, MaterialPart, Object, Scene};
+use crate::world::texture::split;
 
 /// Geometry of one object in one material, ready to draw.
 pub(crate) struct SurfaceDraw<'a> {
@@ -28,11 +30,26 @@ pub(crate) struct SurfaceDraw<'a> {
     /// Of each triangle that in the object's mesh.
     numbers: Vec<u32>,
     pub(crate) primitive: PrimitiveState,
+    /// What its albedo is multiplied by.
+    pub(crate) texture: Option<Textured>,
+}
+
+/// The same geometry with texture coordinates, and the texture.
+pub(crate) struct Textured {
+    pub(crate) binding: TextureBinding,
+    /// Eight floats each: those of the surface, and the coordinates.
+    vertices: Arc<VertexBuffer>,
+    indices: Arc<IndexBuffer>,
 }
 
 impl<'a> SurfaceDraw<'a> {
     /// A draw for each material; vertices are shared.
-    pub(crate) fn of_object(scene: &Scene, view: &View, object: &'a Object) -> Vec<Self> {
+    pub(crate) fn of_object(
+        scene: &Scene,
+        view: &View,
+        object: &'a Object,
+        textures: &SurfaceTextures,
+    ) -> Vec<Self> {
         let surface = far_surface::clipped(object, view);
         let surface = surface.unwrap_or_else(|| SurfaceVertices::whole(object, view));
         let mut primitive = clamped();
@@ -49,22 +66,28 @@ impl<'a> SurfaceDraw<'a> {
                 .collect()
         };
         let parts = object.painted();
+        let textured = |part: &MaterialPart| {
+            let binding = part.texture.as_ref().and_then(|t| textures.binding(t))?;
+            Some(textured(object, part, &surface, binding))
+        };
+        let textured: Vec<Option<Textured>> = parts.iter().map(textured).collect();
         let numbers: Vec<Vec<u32>> = parts.iter().map(numbers).collect();
         let indices: Vec<IndexBuffer> = parts.iter().map(indices).collect();
         let vertices = Arc::new(VertexBuffer {
             data: surface.data,
             stride: STRIDE,
         });
-        let draw = |((part, indices), numbers): ((MaterialPart, IndexBuffer), Vec<u32>)| Self {
+        let geometry = indices.into_iter().zip(numbers).zip(textured);
+        let draw = |(part, ((indices, numbers), texture)): (MaterialPart, _)| Self {
             object,
             material: part.material,
             vertices: vertices.clone(),
             indices: Arc::new(indices),
             numbers,
             primitive: primitive.clone(),
+            texture,
         };
-        let parts = parts.into_iter().zip(indices).zip(numbers);
-        parts.map(draw).collect()
+        parts.into_iter().zip(geometry).map(draw).collect()
     }
 
     /// Six floats each: position relative to the view's origin, and normal. All
@@ -114,6 +137,26 @@ impl<'a> SurfaceDraw<'a> {
         self.draw_alone(pipeline, VertexBuffer { data, stride: 8 })
     }
 
+    /// The surface with its texture, for [`gnomon_shaders::textured::TexturedSurfaces`];
+    /// `before` are the textures before that of the surface.
+    pub(crate) fn draw_textured(
+        &self,
+        pipeline: RenderPipeline,
+        textured: &Textured,
+        before: impl IntoIterator<Item = TextureBinding>,
+    ) -> Draw {
+        let textures = before.into_iter().chain([textured.binding.clone()]).collect();
+        Draw {
+            textures,
+            ..Draw::indexed(
+                &self.object.name,
+                &Arc::new(pipeline),
+                &textured.vertices,
+                &textured.indices,
+            )
+        }
+    }
+
     fn corner(&self, i: u32) -> [f32; 3] {
         let at = i as usize * self.vertices.stride;
         [0, 1, 2].map(|k| self.vertices.data[at + k])
@@ -159,6 +202,33 @@ impl<'a> SurfaceDraw<'a> {
             &self.vertices,
             &self.indices,
         )
+    }
+}
+
+fn textured(
+    object: &Object,
+    part: &MaterialPart,
+    surface: &SurfaceVertices,
+    binding: TextureBinding,
+) -> Textured {
+    let corners = part.triangles.iter().flat_map(|&t| {
+        let own = surface.of(t).iter();
+        own.map(move |&c| (c, surface.coordinates_of(object, t, c)))
+    });
+    let seams = split(corners);
+    let row = |&(vertex, at): &(u32, [f32; 2])| {
+        let own = &surface.data[vertex as usize * STRIDE..][..STRIDE];
+        own.iter().copied().chain(at)
+    };
+    let vertices = VertexBuffer {
+        data: seams.vertices.iter().flat_map(row).collect(),
+        stride: STRIDE + 2,
+    };
+    let indices = seams.triangles.into_iter().flatten();
+    Textured {
+        binding,
+        vertices: Arc::new(vertices),
+        indices: Arc::new(IndexBuffer::new(indices.collect())),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Vertices of an object's surface, and which triangles are left of each of its own.
 
 use super::view::View;
-use crate::world::scene::Object;
+use crate::world::scene::{CornerCoordinates, Object};
 
 /// Floats of a vertex: its position and its normal.
 pub(crate) const STRIDE: usize = 6;
@@ -10,6 +10,8 @@ pub(crate) const STRIDE: usize = 6;
 pub(crate) struct SurfaceVertices {
     /// Six floats each: position and normal.
     pub(crate) data: Vec<f32>,
+    /// Texture coordinates of each vertex, where they are not those of the mesh's corners.
+    pub(crate) coordinates: Option<Vec<[f32; 2]>>,
     triangles: Vec<[u32; 3]>,
     /// Where in `triangles` those of each of the mesh's end.
     ends: Vec<usize>,
@@ -20,6 +22,7 @@ impl SurfaceVertices {
     pub(crate) fn new() -> Self {
         Self {
             data: Vec::new(),
+            coordinates: Some(Vec::new()),
             triangles: Vec::new(),
             ends: Vec::new(),
         }
@@ -33,6 +36,7 @@ impl SurfaceVertices {
             data: rows
                 .flat_map(|(p, n)| view.point(*p).into_iter().chain(*n))
                 .collect(),
+            coordinates: None,
             ends: (1..=shading.triangles.len()).collect(),
             triangles: shading.triangles,
         }
@@ -47,6 +51,19 @@ impl SurfaceVertices {
     pub(crate) fn push(&mut self, triangles: impl IntoIterator<Item = [u32; 3]>) {
         self.triangles.extend(triangles);
         self.ends.push(self.triangles.len());
+    }
+
+    /// Texture coordinates of the corners of `triangle`, which is left of triangle `t`.
+    pub(crate) fn coordinates_of(
+        &self,
+        object: &Object,
+        t: u32,
+        triangle: [u32; 3],
+    ) -> CornerCoordinates {
+        match &self.coordinates {
+            Some(own) => triangle.map(|v| own[v as usize]),
+            None => object.coordinates_of(t),
+        }
     }
 
     /// What is left of triangle `t` of the mesh.

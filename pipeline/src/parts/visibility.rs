@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use glam::DVec4;
+use gnomon_raster::state::{ColorTargetState, ColorWrites};
 use gnomon_raster::{
     ColorAttachment, Draw, Format, LoadOp, Recording, RenderPipeline, Sampler, StoreOp,
     Subresource, TextureBinding, TextureDescriptor, TextureId, VertexBuffer,
@@ -143,6 +144,17 @@ pub fn attachment(texture: TextureId, load: LoadOp<[f32; 4]>) -> ColorAttachment
         load,
         store: StoreOp::Store,
     }
+}
+
+/// Replaces attachment 0 of `attachments` and leaves the others alone.
+pub(crate) fn first_target(attachments: usize) -> Vec<ColorTargetState> {
+    let kept = ColorTargetState {
+        write_mask: ColorWrites(0),
+        ..ColorTargetState::OPAQUE
+    };
+    let mut targets = vec![kept; attachments];
+    targets[0] = ColorTargetState::OPAQUE;
+    targets
 }
 
 /// A texture for fetches of single texels.

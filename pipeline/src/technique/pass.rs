@@ -52,6 +52,8 @@ pub enum PassRole {
     ShadowRays,
     /// Lines across lights.
     LineSamples,
+    /// Samples of pixels become pixels.
+    ResolveSamples,
     /// One picture added to another.
     AddPicture,
     /// Anything else.

@@ -1,5 +1,7 @@
 //! How surfaces are shaded.
 
+use super::texture::SurfaceTexture;
+
 /// Phong material, linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -36,6 +38,8 @@ impl Material {
 pub struct MaterialPart {
     /// How they are shaded.
     pub material: Material,
+    /// What the material's albedo is multiplied by, at the texture coordinates of the object.
+    pub texture: Option<SurfaceTexture>,
     /// Indices into the mesh's triangles, ascending.
     pub triangles: Vec<u32>,
 }

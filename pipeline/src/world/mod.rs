@@ -19,6 +19,7 @@ pub mod plates;
 pub mod scene;
 pub mod shape;
 mod tally;
+pub mod texture;
 pub mod warning;
 
 #[cfg(test)]

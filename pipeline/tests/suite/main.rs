@@ -54,6 +54,8 @@ mod split_sums;
 mod stress;
 mod subdivision;
 mod technique_determinism;
+mod supersampling;
+mod textures;
 mod tile_depths;
 mod views;
 mod visibility_sum;

@@ -5,6 +5,7 @@ use gnomon_raster::simd::each3;
 use gnomon_raster::{F32, Lanes, uniforms};
 
 use crate::soft_volumes::own_texels;
+use crate::textured::base_color;
 
 /// Luminance of linear Rec. 709 RGB.
 const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
@@ -27,23 +28,67 @@ uniforms!(LessObscured { albedo, specular });
 
 impl FragmentShader for LessObscured {
     fn outputs(&self) -> FragmentOutputs {
-        FragmentOutputs {
-            textures: if self.specular.is_some() { 4 } else { 2 },
-            counts: &["negative-radiance"],
-            ..FragmentOutputs::default()
-        }
+        outputs(self.images())
     }
 
     #[inline(always)]
     fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let albedo = each3(
+            #[inline(always)]
+            |c| F32::splat(l, self.albedo[c]),
+        );
+        self.shade_with(l, f, albedo);
+    }
+}
+
+/// [`LessObscured`] with a base colour from the texture behind the images.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TexturedLessObscured {
+    /// The surface; its albedo is multiplied.
+    pub surface: LessObscured,
+}
+uniforms!(TexturedLessObscured { surface });
+
+impl FragmentShader for TexturedLessObscured {
+    fn outputs(&self) -> FragmentOutputs {
+        outputs(self.surface.images() + 1)
+    }
+
+    #[inline(always)]
+    fn shade<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>) {
+        let base = base_color(l, f, self.surface.images() as u32);
+        let albedo = each3(
+            #[inline(always)]
+            |c| base[c] * self.surface.albedo[c],
+        );
+        self.surface.shade_with(l, f, albedo);
+    }
+}
+
+fn outputs(textures: usize) -> FragmentOutputs {
+    FragmentOutputs {
+        textures,
+        counts: &["negative-radiance"],
+        ..FragmentOutputs::default()
+    }
+}
+
+impl LessObscured {
+    #[inline(always)]
+    fn images(&self) -> usize {
+        if self.specular.is_some() { 4 } else { 2 }
+    }
+
+    #[inline(always)]
+    fn shade_with<L: Lanes>(&self, l: L, f: &mut Fragment<'_, L>, albedo: [F32<L>; 3]) {
         let (zero, one) = (F32::splat(l, 0.0), F32::splat(l, 1.0));
-        let images: [_; 4] = own_texels(l, f, if self.specular.is_some() { 4 } else { 2 });
+        let images: [_; 4] = own_texels(l, f, self.images());
         let diffuse = difference(&images, 0);
         let glossy = difference(&images, 2);
         let mut below = diffuse[0].lt(zero) | diffuse[1].lt(zero) | diffuse[2].lt(zero);
         let mut light = each3(
             #[inline(always)]
-            |c| diffuse[c].max(zero) * self.albedo[c],
+            |c| diffuse[c].max(zero) * albedo[c],
         );
         if let Some(specular) = self.specular {
             below = below | glossy[0].lt(zero) | glossy[1].lt(zero) | glossy[2].lt(zero);

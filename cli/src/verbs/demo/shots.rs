@@ -145,6 +145,7 @@ impl Shot {
             },
             gpu,
             repeat: REPEAT,
+            supersample: 1,
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use gnomon_pipeline::measure::render::MAX_SUPERSAMPLE;
 
 use super::show::ShowRequest;
 use crate::flags::FrameArgs;
@@ -36,6 +37,11 @@ pub(crate) struct RenderArgs {
     /// beside the render]; may be repeated
     #[arg(long, value_name = "BUFFER[@PASS[/DRAW]][=FILE]", value_parser = ShowRequest::parse)]
     pub(crate) show: Vec<ShowRequest>,
+    /// Samples along each side of a pixel: the picture is resolved from N x N of them, in
+    /// linear light, by a pass that is counted
+    #[arg(long, value_name = "N", default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SUPERSAMPLE)))]
+    pub(crate) supersample: u32,
     /// Frames to time; the median is reported
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) repeat: u32,

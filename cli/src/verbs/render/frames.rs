@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gnomon_pipeline::measure::render::{Rendered, render_next};
+use gnomon_pipeline::measure::render::{Rendered, render_next_supersampled};
 use gnomon_pipeline::technique::KeptPictures;
 use gnomon_pipeline::techniques::Registry;
 use serde::Serialize;
@@ -61,7 +61,9 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         let params = args.frame.params_of(&params, frame);
         let job = RenderJob::of(args, technique, params, scene, Some(out))?;
         let ahead = (args.frame).prepare(technique, &job.params, &job.scene, &progress)?;
-        let mut done = render_next(&job.scene, technique, &job.params, &job.settings, &mut kept)?;
+        let settings = (&job.settings, job.samples);
+        let (scene, params) = (&job.scene, &job.params);
+        let mut done = render_next_supersampled(scene, technique, params, settings, &mut kept)?;
         done.warnings.extend(ahead);
         progress.step();
         let files = write(&job, args, &done, &progress)?;

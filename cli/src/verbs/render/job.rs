@@ -8,6 +8,7 @@ use gnomon_pipeline::measure::render::{RenderSettings, Rendered};
 use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::Scene;
+use gnomon_raster::MAX_TEXTURE_SIZE;
 
 use super::args::{Per, RenderArgs};
 use crate::error::CliError;
@@ -22,6 +23,8 @@ pub(super) struct RenderJob {
     pub(super) technique: &'static dyn Technique,
     pub(super) params: Params,
     pub(super) settings: RenderSettings,
+    /// Samples along a side of a pixel.
+    pub(super) samples: u32,
     pub(super) out: PathBuf,
     pub(super) overlays: Vec<(OverlayKind, PathBuf)>,
     per: Per,
@@ -50,6 +53,7 @@ impl RenderJob {
     ) -> Result<Self, CliError> {
         check_overlays(args, &scene)?;
         let size = args.frame.size_of(&scene);
+        check_samples(args, size)?;
         let out = out.unwrap_or_else(|| default_out(&scene.name, &distinguished(args)));
         if !is_stdout(&out) {
             files::check_target(&out)?;
@@ -63,6 +67,7 @@ impl RenderJob {
                 gpu: args.frame.gpu.config(),
                 repeat: args.repeat,
             },
+            samples: args.supersample,
             overlays: overlay_paths(&args.overlay, &out),
             out,
             per: args.per,
@@ -76,6 +81,7 @@ impl RenderJob {
             params: &self.params,
             gpu: self.settings.gpu,
             repeat: self.settings.repeat,
+            supersample: self.samples,
         };
         let document = RenderDocument::new(of, done, files);
         match self.per {
@@ -128,6 +134,29 @@ impl RenderJob {
     }
 }
 
+/// Refuses more samples than a texture has room for, and what is of one sample.
+fn check_samples(args: &RenderArgs, size: [u32; 2]) -> Result<(), CliError> {
+    let side = args.supersample;
+    let refuse = |valid: String| {
+        let (flag, value) = ("--supersample", side.to_string());
+        Err(CliError::Flag { flag, value, valid })
+    };
+    let most = MAX_TEXTURE_SIZE / size[0].max(size[1]).max(1);
+    if side > most.max(1) {
+        return refuse(format!(
+            "{}x{} pixels have room for 1 to {} samples along a side: {MAX_TEXTURE_SIZE} in all",
+            size[0],
+            size[1],
+            most.max(1)
+        ));
+    }
+    if side > 1 && !(args.overlay.is_empty() && args.show.is_empty()) {
+        let what = "overlays and buffers are those of one sample; leave them out, or give 1";
+        return refuse(what.to_owned());
+    }
+    Ok(())
+}
+
 /// Refuses a picture of another kind, and stdout where more than the picture goes there or
 /// beside it.
 fn check_out(args: &RenderArgs) -> Result<(), CliError> {
@@ -156,7 +185,8 @@ pub(super) fn distinguished(args: &RenderArgs) -> String {
     let settings = frame.technique.settings.iter().chain(&frame.settings);
     let settings = settings.map(|(key, value)| format!("-{key}-{value}"));
     let time = (frame.time != 0.0).then(|| format!("-time-{}", frame.time));
-    let name: String = settings.chain(time).collect();
+    let samples = (args.supersample > 1).then(|| format!("-supersample-{}", args.supersample));
+    let name: String = settings.chain(time).chain(samples).collect();
     let short: String = verbs::file_stem(&name)
         .chars()
         .take(MOST_OF_A_NAME)

@@ -1,6 +1,6 @@
 //! From the command line to pictures and the summary.
 
-use gnomon_pipeline::measure::render::{Rendered, render};
+use gnomon_pipeline::measure::render::{Rendered, render_supersampled};
 use gnomon_pipeline::measure::wedge_work::WedgeWork;
 use gnomon_pipeline::techniques::Registry;
 
@@ -27,7 +27,8 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     progress.step();
     progress.doing("rendering");
     let ahead = (args.frame).prepare(job.technique, &job.params, &job.scene, &progress)?;
-    let mut done = render(&job.scene, job.technique, &job.params, &job.settings)?;
+    let (scene, technique, params) = (&job.scene, job.technique, &job.params);
+    let mut done = render_supersampled(scene, technique, params, &job.settings, job.samples)?;
     done.warnings.extend(ahead);
     progress.step();
     let files = write(&job, args, &done, &progress)?;

@@ -90,14 +90,18 @@ fn about(job: &RenderJob, done: &Rendered) -> About {
         .params
         .iter()
         .map(|(key, value)| format!("{key}={value}"));
-    vec![
+    let mut about = vec![
         software(),
         ("Scene", job.scene.name.clone()),
         ("Technique", job.technique.name().to_owned()),
         ("Parameters", params.collect::<Vec<_>>().join(" ")),
         ("Color hash", done.color_hash()),
         ("Visibility hash", done.visibility_hash()),
-    ]
+    ];
+    if job.samples > 1 {
+        about.push(("Supersample", job.samples.to_string()));
+    }
+    about
 }
 
 /// Linear light in 32-bit floats.

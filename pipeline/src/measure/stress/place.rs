@@ -67,6 +67,7 @@ fn with_casters(
         object.mesh = Arc::new(change(&object.mesh)?);
         // Parts are of triangles, which are others.
         object.parts.clear();
+        object.coordinates = None;
         object.rest = None;
     }
     Ok(())

@@ -9,8 +9,9 @@ use gnomon_raster::{
     Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, Sampler, TextureBinding,
     TextureDescriptor, TextureId, VertexBuffer,
 };
-use gnomon_shaders::deferred::lit::LessObscured;
+use gnomon_shaders::deferred::lit::{LessObscured, TexturedLessObscured};
 use gnomon_shaders::deferred::obscured::{Highlight, ObscuredRadiance, Transported};
+use gnomon_shaders::textured::TexturedSurfaces;
 use gnomon_shaders::transform::Surfaces;
 
 use super::atlas::{Atlas, Occluders};
@@ -307,7 +308,7 @@ impl<'f, 'a> Deferred<'f, 'a> {
                 albedo: s.material.albedo,
                 specular: has_glossy.then_some(s.material.specular),
             };
-            let pipeline = RenderPipeline {
+            let mut pipeline = RenderPipeline {
                 label: "lit".into(),
                 vertex: Surfaces(frame.draws.view.clip_from_world).stage(),
                 fragment: Some(shader.stage()),
@@ -315,8 +316,15 @@ impl<'f, 'a> Deferred<'f, 'a> {
                 depth_stencil: equal_depth(),
                 color_targets: vec![ColorTargetState::ADDITIVE, ColorTargetState::OPAQUE],
             };
+            let images = textures().take(if has_glossy { 4 } else { 2 });
+            if let Some(textured) = &s.texture {
+                let shader = TexturedLessObscured { surface: shader };
+                pipeline.vertex = TexturedSurfaces(frame.draws.view.clip_from_world).stage();
+                pipeline.fragment = Some(shader.stage());
+                return s.draw_textured(pipeline, textured, images);
+            }
             Draw {
-                textures: textures().take(if has_glossy { 4 } else { 2 }).collect(),
+                textures: images.collect(),
                 ..s.draw(pipeline)
             }
         });

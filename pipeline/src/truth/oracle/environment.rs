@@ -21,7 +21,7 @@ use super::sampled::jitter;
 use super::surfaces::{Receiver, SurfaceHit, Surfaces};
 use crate::world::environment::MapSource;
 use crate::world::mesh::widen;
-use crate::world::scene::{Material, Scene};
+use crate::world::scene::{EyeRays, MaterialPart, Object, Scene};
 
 /// Directions where no number is given.
 pub const DIRECTIONS: usize = 1024;
@@ -124,6 +124,7 @@ impl EnvironmentOracle {
             let sight = rays.direction(x, y);
             let seen = rays.origin + sight * hit.depth;
             let surface = Shading::new(scene, &hit, seen, sight, highlights);
+            let surface = surface.textured(scene, &hit, &rays, [x, y]);
             let corners = &surfaces.corners()[surfaces.index_of(&hit) as usize];
             let receiver = Receiver::on_facet(corners, seen, sight);
             Some(self.radiance(receiver.point, &surface))
@@ -161,7 +162,7 @@ impl Shading {
         let normals = normals.map(|n| widen(object.mesh.normals()[n as usize]));
         let normal: DVec3 = (0..3).map(|k| normals[k] * weights[k]).sum();
         let facing = if facet.dot(sight) > 0.0 { -1.0 } else { 1.0 };
-        let material = material(object, hit.triangle);
+        let material = part(object, hit.triangle).map_or(object.material, |p| p.material);
         let strength = if highlights { 1.0 } else { 0.0 };
         Self {
             normal: normal.normalize_or_zero() * facing,
@@ -171,6 +172,24 @@ impl Shading {
             shininess: material.shininess,
             receives: object.receives,
         }
+    }
+
+    /// The same with the texture of what is seen, filtered over the pixel around `at`.
+    fn textured(mut self, scene: &Scene, hit: &SurfaceHit, rays: &EyeRays, at: [f64; 2]) -> Self {
+        let object = &scene.objects[hit.object as usize];
+        let part = part(object, hit.triangle);
+        if let Some(texture) = part.and_then(|p| p.texture.as_ref()) {
+            let place = |x, y| texture_place(object, hit.triangle, rays, [x, y]);
+            let [x, y] = at;
+            let change = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], b[1] - a[1]];
+            let gradients = [
+                change(place(x - 0.5, y), place(x + 0.5, y)),
+                change(place(x, y - 0.5), place(x, y + 0.5)),
+            ];
+            let base = texture.sample(place(x, y), gradients);
+            self.albedo = [0, 1, 2].map(|c| self.albedo[c] * base[c]);
+        }
+        self
     }
 
     /// Share of light from a direction that goes to the eye, times the cosine and
@@ -186,11 +205,24 @@ impl Shading {
     }
 }
 
-fn material(object: &crate::world::scene::Object, triangle: u32) -> Material {
-    let own =
-        |part: &&crate::world::scene::MaterialPart| part.triangles.binary_search(&triangle).is_ok();
-    let part = object.parts.iter().find(own);
-    part.map_or(object.material, |p| p.material)
+fn part(object: &Object, triangle: u32) -> Option<&MaterialPart> {
+    let own = |part: &&MaterialPart| part.triangles.binary_search(&triangle).is_ok();
+    object.parts.iter().find(own)
+}
+
+/// Where the ray through a point of the image meets the plane of a triangle, as texture
+/// coordinates.
+fn texture_place(object: &Object, triangle: u32, rays: &EyeRays, [x, y]: [f64; 2]) -> [f64; 2] {
+    let [a, b, c] = object.mesh.corners(triangle as usize);
+    let facet = (b - a).cross(c - a);
+    let sight = rays.direction(x, y);
+    let seen = rays.origin + sight * (facet.dot(a - rays.origin) / facet.dot(sight));
+    let weights = barycentric([a, b, c], facet, seen);
+    let corners = object.coordinates_of(triangle);
+    [0, 1].map(|axis| {
+        let of = |k: usize| weights[k] * f64::from(corners[k][axis]);
+        of(0) + of(1) + of(2)
+    })
 }
 
 fn barycentric([a, b, c]: [DVec3; 3], facet: DVec3, p: DVec3) -> [f64; 3] {

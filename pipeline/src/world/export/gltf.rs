@@ -1,14 +1,19 @@
 //! Binary glTF 2.0 of a scene.
 
+use std::sync::Arc;
+
 use glam::DVec3;
+use gnomon_raster::state::{AddressMode, FilterMode, Sampler};
 use serde_json::{Value, json};
 
 use super::Exporting;
+use super::pictures::number;
 use crate::world::light::{Light, LightShape};
 use crate::world::material::{Material, MaterialPart};
 use crate::world::mesh::ShadingVertices;
-use crate::world::model::gltf::distance;
-use crate::world::scene::{Camera, Scene};
+use crate::world::model::gltf::{SMALLEST, distance};
+use crate::world::scene::{Camera, Object, Scene};
+use crate::world::texture::{Picture, SurfaceTexture, split};
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
@@ -41,6 +46,10 @@ struct File {
     views: Vec<Value>,
     accessors: Vec<Value>,
     materials: Vec<Value>,
+    textures: Vec<Value>,
+    images: Vec<Value>,
+    samplers: Vec<Value>,
+    pictures: Vec<Arc<Picture>>,
     meshes: Vec<Value>,
     nodes: Vec<Value>,
     cameras: Vec<Value>,
@@ -81,14 +90,75 @@ impl File {
         }))
     }
 
-    fn add_indices(&mut self, drawn: &ShadingVertices, part: &MaterialPart) -> usize {
+    fn add_part(&mut self, drawn: &ShadingVertices, part: &MaterialPart) -> usize {
         let triangles = part.triangles.iter().map(|t| drawn.triangles[*t as usize]);
+        self.add_indices(triangles)
+    }
+
+    fn add_indices(&mut self, triangles: impl ExactSizeIterator<Item = [u32; 3]>) -> usize {
+        let count = 3 * triangles.len();
         let words = triangles.flatten().map(u32::to_le_bytes);
         let view = self.add_view(words, 34963);
         self.add_accessor(json!({
-            "bufferView": view, "componentType": UNSIGNED_INT,
-            "count": 3 * part.triangles.len(), "type": "SCALAR",
+            "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR",
         }))
+    }
+
+    /// A part with vertices of its own, where its texture has seams.
+    fn textured_primitive(
+        &mut self,
+        object: &Object,
+        drawn: &ShadingVertices,
+        normals: &[[f32; 3]],
+        part: &MaterialPart,
+    ) -> Value {
+        let corners = part.triangles.iter().map(|&t| {
+            let coordinates = object.coordinates_of(t);
+            (drawn.triangles[t as usize], coordinates)
+        });
+        let seams = split(corners);
+        let own = |of: &[[f32; 3]]| -> Vec<[f32; 3]> {
+            let vertices = seams.vertices.iter();
+            vertices.map(|(v, _)| of[*v as usize]).collect()
+        };
+        let position = self.add_vectors(&own(&drawn.positions));
+        let normal = self.add_vectors(&own(normals));
+        let words = seams.vertices.iter().flat_map(|(_, at)| *at);
+        let view = self.add_view(words.map(f32::to_le_bytes), 34962);
+        let texels = self.add_accessor(json!({
+            "bufferView": view, "componentType": FLOAT, "count": seams.vertices.len(),
+            "type": "VEC2",
+        }));
+        let indices = self.add_indices(seams.triangles.into_iter());
+        json!({
+            "attributes": {"POSITION": position, "NORMAL": normal, "TEXCOORD_0": texels},
+            "indices": indices,
+        })
+    }
+
+    /// The number of a texture, whose picture goes into the buffer.
+    fn add_texture(&mut self, texture: &SurfaceTexture) -> usize {
+        let known = number(&self.pictures, &texture.picture);
+        let image = known.unwrap_or_else(|| self.add_picture(&texture.picture));
+        self.samplers.push(sampler(&texture.sampler));
+        let sampler = self.samplers.len() - 1;
+        self.textures
+            .push(json!({"source": image, "sampler": sampler}));
+        self.textures.len() - 1
+    }
+
+    fn add_picture(&mut self, picture: &Arc<Picture>) -> usize {
+        let offset = self.buffer.len();
+        self.buffer.extend(picture.encoded());
+        let length = self.buffer.len() - offset;
+        self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
+        self.views
+            .push(json!({"buffer": 0, "byteOffset": offset, "byteLength": length}));
+        self.images.push(json!({
+            "bufferView": self.views.len() - 1, "mimeType": picture.kind().mime(),
+        }));
+        self.pictures.push(picture.clone());
+        self.images.len() - 1
     }
 
     fn add_object(&mut self, exporting: &Exporting<'_>) {
@@ -100,13 +170,26 @@ impl File {
         let normal = self.add_vectors(&normals);
         let mut primitives = Vec::new();
         for part in exporting.object.painted() {
-            let indices = self.add_indices(&drawn, &part);
-            self.materials.push(material(&part.material));
-            primitives.push(json!({
-                "attributes": {"POSITION": position, "NORMAL": normal},
-                "indices": indices,
-                "material": self.materials.len() - 1,
-            }));
+            let mut material = material(&part.material);
+            let primitive = match &part.texture {
+                Some(texture) => {
+                    let index = self.add_texture(texture);
+                    material["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": index});
+                    self.textured_primitive(exporting.object, &drawn, &normals, &part)
+                }
+                None => {
+                    let indices = self.add_part(&drawn, &part);
+                    json!({
+                        "attributes": {"POSITION": position, "NORMAL": normal},
+                        "indices": indices,
+                    })
+                }
+            };
+            self.materials.push(material);
+            primitives.push(primitive);
+            if let Some(last) = primitives.last_mut() {
+                last["material"] = json!(self.materials.len() - 1);
+            }
         }
         let name = super::tables::word(&exporting.object.name);
         self.meshes
@@ -185,6 +268,15 @@ impl File {
             "buffers": [{"byteLength": self.buffer.len()}],
             "cameras": self.cameras,
         });
+        for (name, list) in [
+            ("textures", self.textures),
+            ("images", self.images),
+            ("samplers", self.samplers),
+        ] {
+            if !list.is_empty() {
+                file[name] = Value::Array(list);
+            }
+        }
         let mut used = Vec::new();
         let mut extensions = serde_json::Map::new();
         for (name, lights) in [
@@ -250,6 +342,29 @@ fn material(material: &Material) -> Value {
             "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0,
         },
         "doubleSided": true,
+    })
+}
+
+fn sampler(of: &Sampler) -> Value {
+    let wrap = |mode| match mode {
+        AddressMode::ClampToEdge | AddressMode::ClampToBorder => 33071,
+        AddressMode::MirrorRepeat => 33648,
+        AddressMode::Repeat => 10497,
+    };
+    let levels = of.lod[1] > SMALLEST;
+    let min = match (levels, of.min, of.mip) {
+        (false, FilterMode::Nearest, _) => 9728,
+        (false, FilterMode::Linear, _) => 9729,
+        (true, FilterMode::Nearest, FilterMode::Nearest) => 9984,
+        (true, FilterMode::Linear, FilterMode::Nearest) => 9985,
+        (true, FilterMode::Nearest, FilterMode::Linear) => 9986,
+        (true, FilterMode::Linear, FilterMode::Linear) => 9987,
+    };
+    json!({
+        "magFilter": if of.mag == FilterMode::Nearest { 9728 } else { 9729 },
+        "minFilter": min,
+        "wrapS": wrap(of.address[0]),
+        "wrapT": wrap(of.address[1]),
     })
 }
 

@@ -8,6 +8,7 @@
 mod description;
 mod gltf;
 mod obj;
+mod pictures;
 mod tables;
 
 use crate::world::light::LightShape;
@@ -20,7 +21,7 @@ use crate::world::warning::SceneWarning;
 pub enum ExportFormat {
     /// `NAME.glb`.
     Gltf,
-    /// `NAME.toml`, `NAME.mtl` and an OBJ file for each object.
+    /// `NAME.toml`, `NAME.mtl`, an OBJ file for each object, and pictures on them.
     Obj,
 }
 
@@ -29,7 +30,7 @@ pub enum ExportFormat {
 pub struct Exported {
     /// Names and contents.
     pub files: Vec<(String, Vec<u8>)>,
-    /// Codes `lights-as-points`, `without-backdrop`.
+    /// Codes `lights-as-points`, `without-backdrop`, `texture-samplers`.
     pub warnings: Vec<SceneWarning>,
 }
 
@@ -42,7 +43,16 @@ pub fn export(scene: &Scene, size: [u32; 2], name: &str, formats: &[ExportFormat
     let description = description::describe(scene, size, &objects, with_obj);
     out.add(format!("{name}.json"), pretty(&description));
     if with_obj {
-        out.add(format!("{name}.mtl"), obj::materials(&objects));
+        let pictures = pictures::pictures(&objects);
+        out.add(
+            format!("{name}.mtl"),
+            obj::materials(&objects, name, &pictures),
+        );
+        for (k, picture) in pictures.iter().enumerate() {
+            let file = pictures::file(name, k, picture);
+            out.files.push((file, picture.encoded().to_vec()));
+        }
+        out.warnings.extend(other_samplers(&objects));
         for object in &objects {
             let text = obj::model(object, &format!("{name}.mtl"));
             out.add(object.file.clone(), text);
@@ -112,6 +122,17 @@ fn points_instead(scene: &Scene) -> Option<SceneWarning> {
         message:
             "glTF has no spheres, polygons and parallelograms as lights; these are points in it"
                 .to_owned(),
+    })
+}
+
+fn other_samplers(objects: &[Exporting<'_>]) -> Option<SceneWarning> {
+    let count = pictures::other_samplers(objects);
+    (count > 0).then(|| SceneWarning {
+        code: "texture-samplers",
+        count,
+        message: "OBJ has no words for how these textures are filtered or mirrored; they are \
+                  linear and repeated in it"
+            .to_owned(),
     })
 }
 

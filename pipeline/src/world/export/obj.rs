@@ -2,9 +2,13 @@
 //! when they are read.
 
 use std::fmt::Write as _;
+use std::sync::Arc;
 
-use super::Exporting;
+use gnomon_raster::AddressMode;
+
+use super::{Exporting, pictures};
 use crate::world::material::Material;
+use crate::world::texture::{CornerCoordinates, Picture, SurfaceTexture};
 
 /// Writing to a String cannot fail.
 macro_rules! line {
@@ -24,12 +28,19 @@ fn word(name: &str) -> String {
 }
 
 /// The library of all materials.
-pub(super) fn materials(objects: &[Exporting<'_>]) -> String {
+pub(super) fn materials(
+    objects: &[Exporting<'_>],
+    scene: &str,
+    pictures: &[Arc<Picture>],
+) -> String {
     let mut text = String::new();
     for object in objects {
         for (k, part) in object.object.painted().iter().enumerate() {
             line!(text, "newmtl {}", name(object, k));
             write_material(&mut text, &part.material);
+            if let Some(texture) = &part.texture {
+                write_map(&mut text, texture, scene, pictures);
+            }
         }
     }
     text
@@ -41,6 +52,16 @@ fn write_material(text: &mut String, m: &Material) {
     let [r, g, b] = m.specular;
     line!(text, "Ks {r} {g} {b}");
     line!(text, "Ns {}\nillum 2", m.shininess);
+}
+
+fn write_map(text: &mut String, texture: &SurfaceTexture, scene: &str, pictures: &[Arc<Picture>]) {
+    let Some(k) = pictures::number(pictures, &texture.picture) else {
+        return;
+    };
+    let clamped = texture.sampler.address[0] == AddressMode::ClampToEdge;
+    let option = if clamped { "-clamp on " } else { "" };
+    let file = pictures::file(scene, k, &texture.picture);
+    line!(text, "map_Kd {option}{file}");
 }
 
 /// An object, whose materials are in `library`.
@@ -55,8 +76,20 @@ pub(super) fn model(object: &Exporting<'_>, library: &str) -> String {
         line!(text, "usemtl {}", name(object, k));
         for &triangle in &part.triangles {
             let [a, b, c] = mesh.triangles()[triangle as usize].map(|i| i + 1);
-            line!(text, "f {a} {b} {c}");
+            if part.texture.is_some() {
+                write_texels(&mut text, object.object.coordinates_of(triangle));
+                line!(text, "f {a}/-3 {b}/-2 {c}/-1");
+            } else {
+                line!(text, "f {a} {b} {c}");
+            }
         }
     }
     text
+}
+
+/// Corners of a triangle; v counts from below in OBJ.
+fn write_texels(text: &mut String, corners: CornerCoordinates) {
+    for [u, v] in corners {
+        line!(text, "vt {u} {}", 1.0 - f64::from(v));
+    }
 }

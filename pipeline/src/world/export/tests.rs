@@ -222,3 +222,69 @@ fn the_description_names_only_files_that_are_written() {
         }
     }
 }
+
+/// Pictures, where they lie and how they are read come back from both formats.
+#[test]
+fn textures_are_read_back() {
+    use crate::world::texture::{Picture, REPEATED, SurfaceTexture};
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_raw(2, 1, vec![255, 0, 0, 0, 0, 255]).unwrap();
+    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    let picture = std::sync::Arc::new(Picture::decode(bytes.into_inner()).unwrap());
+    let mut scene = builtin::build("cylinder").unwrap();
+    for (k, object) in scene.objects.iter_mut().enumerate() {
+        let count = object.mesh.triangles().len() as u32;
+        let mut texture = SurfaceTexture::repeated(picture.clone());
+        if k == 0 {
+            texture.sampler.address = [gnomon_raster::AddressMode::ClampToEdge; 3];
+        }
+        object.parts = vec![crate::world::material::MaterialPart {
+            material: object.material,
+            texture: Some(texture),
+            triangles: (0..count).collect(),
+        }];
+        let corner = |t: u32, c: u32| [(t * 3 + c) as f32 / 7.0, c as f32 - 0.3];
+        let of = |t| [0, 1, 2].map(|c| corner(t, c));
+        object.coordinates = Some((0..count).map(of).collect());
+    }
+    let (folder, exported) = written(&scene, "textures");
+    assert!(exported.files.iter().any(|(name, _)| name == "it-0.png"));
+    assert!(
+        exported
+            .warnings
+            .iter()
+            .all(|w| w.code != "texture-samplers")
+    );
+    let from_toml = file::load(&folder.join("it.toml")).unwrap();
+    let from_glb = load_and_frame(&folder.join("it.glb"), Outside::Refused).unwrap();
+    assert_eq!(from_toml.warnings, []);
+    for read in [from_toml, from_glb] {
+        for (own, read) in scene.objects.iter().zip(&read.objects) {
+            let lies = |o: &Object| {
+                let triangles = o.mesh.triangles().iter().enumerate();
+                let mut all: Vec<_> = triangles
+                    .map(|(t, corners)| {
+                        let places = corners.map(|i| o.mesh.positions()[i as usize]);
+                        let at = o.coordinates_of(t as u32);
+                        [0, 1, 2].map(|k| (places[k].map(f32::to_bits), at[k].map(f32::to_bits)))
+                    })
+                    .collect();
+                all.sort_unstable();
+                all
+            };
+            assert_eq!(lies(own), lies(read), "{}", own.name);
+            let [a, b] = [own, read].map(|o| o.parts[0].texture.clone().unwrap());
+            assert_eq!(a.picture, b.picture);
+            assert_eq!(a.sampler.address[..2], b.sampler.address[..2]);
+            let without_address = |s: gnomon_raster::Sampler| gnomon_raster::Sampler {
+                address: REPEATED.address,
+                ..s
+            };
+            assert_eq!(without_address(a.sampler), without_address(b.sampler));
+        }
+    }
+    let part = scene.objects[1].parts[0].texture.as_mut().unwrap();
+    part.sampler.mag = gnomon_raster::FilterMode::Nearest;
+    let other = export(&scene, [64, 48], "it", &[ExportFormat::Obj]);
+    assert!(other.warnings.iter().any(|w| w.code == "texture-samplers"));
+}

@@ -7,6 +7,7 @@ mod sequence;
 
 use thiserror::Error;
 
+pub(crate) use read::linear;
 pub use read::{LightImageError, MAX_LIGHT_IMAGE_BYTES, MAX_LIGHT_IMAGES};
 pub use sequence::{LightMoment, LightSequence};
 

@@ -129,7 +129,7 @@ fn png(bytes: &[u8]) -> Result<Picture, String> {
 }
 
 /// Of an sRGB value (IEC 61966-2-1).
-fn linear(v: f64) -> f64 {
+pub(crate) fn linear(v: f64) -> f64 {
     if v <= 0.04045 {
         v / 12.92
     } else {

@@ -74,23 +74,31 @@ fn unknown(path: &Path) -> ModelError {
 /// # Errors
 /// The file cannot be read or holds no valid mesh.
 pub fn load_given(path: &Path, outside: Outside) -> Result<Model, ModelError> {
+    load_given_at(path, outside, 0.0)
+}
+
+/// The same at a time of its animation, in seconds.
+///
+/// # Errors
+/// As [`load_given`].
+pub fn load_given_at(path: &Path, outside: Outside, time: f64) -> Result<Model, ModelError> {
     let read = match format(path).ok_or_else(|| unknown(path))? {
         Format::Obj => from_obj(path, obj::load_given(path, outside)?),
         Format::Ply => from_ply(path, ply::load_given(path)?),
-        Format::Gltf => gltf::load_given(path, outside)?,
+        Format::Gltf => gltf::load_given(path, outside, time)?,
     };
     Ok(read)
 }
 
-/// Reads a model that a scene in `folder` names.
+/// Reads a model that a scene in `folder` names, at a time of its animation, in seconds.
 ///
 /// # Errors
 /// As [`load_given`].
-pub fn load_from(path: &Path, folder: &SceneFolder) -> Result<Model, ModelError> {
+pub fn load_from(path: &Path, folder: &SceneFolder, time: f64) -> Result<Model, ModelError> {
     let read = match format(path).ok_or_else(|| unknown(path))? {
         Format::Obj => from_obj(path, obj::load_from(path, folder)?),
         Format::Ply => from_ply(path, ply::load_from(path, folder)?),
-        Format::Gltf => gltf::load_from(path, folder)?,
+        Format::Gltf => gltf::load_from(path, folder, time)?,
     };
     Ok(read)
 }
@@ -105,6 +113,7 @@ fn from_obj(path: &Path, read: ObjMesh) -> Model {
         name: stem(path),
         shape: read.shape,
         parts: read.parts,
+        coordinates: read.coordinates,
     };
     Model::of(piece, read.warnings)
 }
@@ -114,6 +123,7 @@ fn from_ply(path: &Path, read: PlyMesh) -> Model {
         name: stem(path),
         shape: read.shape,
         parts: Vec::new(),
+        coordinates: Vec::new(),
     };
     Model::of(piece, read.warnings)
 }

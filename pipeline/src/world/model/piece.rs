@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::world::light::Light;
 use crate::world::material::MaterialPart;
 use crate::world::shape::Shape;
+use crate::world::texture::CornerCoordinates;
 use crate::world::warning::SceneWarning;
 
 /// Vertices or triangles that are drawn of a file at most: formats whose bytes say more than
@@ -20,6 +21,8 @@ pub struct Piece {
     pub shape: Shape,
     /// Triangles that have a material, material after material.
     pub parts: Vec<MaterialPart>,
+    /// Of each triangle the texture coordinates of its corners; empty where there are none.
+    pub coordinates: Vec<CornerCoordinates>,
 }
 
 /// An eye that a file has.
@@ -46,6 +49,8 @@ pub struct Model {
     pub camera: Option<ModelCamera>,
     /// Its lights.
     pub lights: Vec<Light>,
+    /// Whether it is another at another time.
+    pub moves: bool,
     /// What was amiss without stopping it.
     pub warnings: Vec<SceneWarning>,
 }
@@ -57,6 +62,7 @@ impl Model {
             pieces: vec![piece],
             camera: None,
             lights: Vec::new(),
+            moves: false,
             warnings,
         }
     }
@@ -67,25 +73,49 @@ impl Model {
         all.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
     }
 
-    /// All solids as one; of equal materials there is one part.
-    pub fn merged(self) -> (Shape, Vec<MaterialPart>) {
+    /// All solids as one; of equal paint there is one part.
+    pub fn merged(self) -> Piece {
         let mut parts: Vec<MaterialPart> = Vec::new();
         let mut base = 0;
         for piece in &self.pieces {
             for part in &piece.parts {
                 let triangles = part.triangles.iter().map(|t| t + base);
-                match parts.iter_mut().find(|p| p.material == part.material) {
+                let alike = |p: &&mut MaterialPart| {
+                    p.material == part.material && p.texture == part.texture
+                };
+                match parts.iter_mut().find(alike) {
                     Some(same) => same.triangles.extend(triangles),
                     None => parts.push(MaterialPart {
-                        material: part.material,
                         triangles: triangles.collect(),
+                        ..part.clone()
                     }),
                 }
             }
             base += piece.shape.triangles.len() as u32;
         }
-        let shapes = self.pieces.into_iter().map(|p| p.shape);
-        (Shape::merged(shapes), parts)
+        let coordinates = self.coordinates();
+        let mut pieces = self.pieces.into_iter().peekable();
+        Piece {
+            name: pieces.peek().map_or_else(String::new, |p| p.name.clone()),
+            shape: Shape::merged(pieces.map(|p| p.shape)),
+            parts,
+            coordinates,
+        }
+    }
+
+    /// Texture coordinates of all triangles, zeros in solids that have none.
+    fn coordinates(&self) -> Vec<CornerCoordinates> {
+        let mut all = Vec::new();
+        if self.pieces.iter().all(|p| p.coordinates.is_empty()) {
+            return all;
+        }
+        let mut end = 0;
+        for piece in &self.pieces {
+            all.extend_from_slice(&piece.coordinates);
+            end += piece.shape.triangles.len();
+            all.resize(end, CornerCoordinates::default());
+        }
+        all
     }
 }
 
@@ -101,14 +131,24 @@ mod tests {
             shape: crate::world::shape::plane(1.0, 0.0),
             parts: vec![MaterialPart {
                 material: Material::matt([albedo; 3]),
+                texture: None,
                 triangles,
             }],
+            coordinates: Vec::new(),
         };
         let mut model = Model::of(piece(0.5, vec![1]), Vec::new());
         model
             .pieces
             .extend([piece(0.25, vec![0]), piece(0.5, vec![0, 1])]);
-        let (shape, parts) = model.merged();
+        model.pieces[1].coordinates = vec![[[0.5; 2]; 3]; 2];
+        let Piece {
+            shape,
+            parts,
+            coordinates,
+            ..
+        } = model.merged();
+        let used = [[0.0; 2], [0.5; 2], [0.0; 2]].map(|c| [[c; 3]; 2]);
+        assert_eq!(coordinates, used.as_flattened());
         assert_eq!((shape.triangles.len(), shape.positions.len()), (6, 12));
         let triangles: Vec<_> = parts.iter().map(|p| p.triangles.clone()).collect();
         assert_eq!(triangles, [vec![1, 4, 5], vec![2]]);

@@ -12,11 +12,12 @@
 //! far from its origin, as geodetic coordinates are, would lose its shape.
 //!
 //! Of materials, `Kd`, `Ks`, `Ns` and `illum` of the files that `mtllib` names are
-//! used, as linear RGB; whatever is wrong with them is a warning. Texture
-//! coordinates and the file's own normals are not used.
+//! used, as linear RGB, and the pictures of `map_Kd` (`map`); whatever is wrong with them
+//! is a warning. The file's own normals are not used.
 
 mod library;
 mod lines;
+mod map;
 mod mesh;
 mod mtl;
 mod paint;
@@ -30,6 +31,7 @@ use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::material::MaterialPart;
 use crate::world::shape::Shape;
 use crate::world::tally::{Tally, beginning};
+use crate::world::texture::{CornerCoordinates, MAX_PICTURE_BYTES};
 use crate::world::warning::SceneWarning;
 pub use lines::NotText;
 use mesh::Faces;
@@ -50,9 +52,12 @@ pub struct ObjMesh {
     pub shape: Shape,
     /// Triangles that have a material, material after material.
     pub parts: Vec<MaterialPart>,
+    /// Of each triangle the texture coordinates of its corners, v counted from above; empty
+    /// where the file has none.
+    pub coordinates: Vec<CornerCoordinates>,
     /// Codes `crossing-polygons`, `repeated-corners`, `degenerate-faces`,
     /// `skipped-faces`, `unsupported-statements`, `missing-mtl`, `bad-mtl`,
-    /// `limited-mtl`, `ignored-maps`, `unknown-material`.
+    /// `limited-mtl`, `ignored-maps`, `missing-maps`, `bad-coordinates`, `unknown-material`.
     pub warnings: Vec<SceneWarning>,
 }
 
@@ -214,9 +219,13 @@ struct Beside<'a> {
 }
 
 impl Beside<'_> {
-    /// Names may be written with the separators of another system.
     fn path_of(&self, name: &str) -> PathBuf {
-        let folder = self.path.parent().unwrap_or(Path::new(""));
+        self.path_beside(self.path, name)
+    }
+
+    /// Names may be written with the separators of another system.
+    fn path_beside(&self, file: &Path, name: &str) -> PathBuf {
+        let folder = file.parent().unwrap_or(Path::new(""));
         let written = folder.join(name);
         let turned = folder.join(name.replace('\\', "/"));
         if !self.is_file(&written) && self.is_file(&turned) {
@@ -240,6 +249,15 @@ impl Libraries for Beside<'_> {
         let path = self.path_of(name);
         let bytes = self.folder.read(&path, MAX_MTL_BYTES)?;
         Ok((path.display().to_string(), bytes))
+    }
+
+    fn has_picture(&self, library: &str, name: &str) -> bool {
+        self.is_file(&self.path_beside(&self.path_of(library), name))
+    }
+
+    fn picture(&self, library: &str, name: &str) -> Result<Vec<u8>, FileError> {
+        let path = self.path_beside(&self.path_of(library), name);
+        self.folder.read(&path, MAX_PICTURE_BYTES)
     }
 }
 
@@ -266,6 +284,7 @@ fn parse_with(
     let warnings = warnings.chain(warnings_of(&scan, &paint)).collect();
     Ok(ObjMesh {
         shape,
+        coordinates: paint.coordinates(&faces),
         parts: paint.parts,
         warnings,
     })
@@ -273,7 +292,11 @@ fn parse_with(
 
 fn warnings_of(scan: &Scan, paint: &Paint) -> impl Iterator<Item = SceneWarning> {
     let materials = &paint.materials;
-    let all: [(_, &Tally, _); 7] = [
+    // Nobody looks at coordinates without a texture.
+    let none = Tally::default();
+    let textured = paint.parts.iter().any(|p| p.texture.is_some());
+    let bad_texels = if textured { &scan.bad_texels } else { &none };
+    let all: [(_, &Tally, _); 9] = [
         (
             "skipped-faces",
             &scan.skipped,
@@ -302,7 +325,17 @@ fn warnings_of(scan: &Scan, paint: &Paint) -> impl Iterator<Item = SceneWarning>
         (
             "ignored-maps",
             &materials.maps,
-            "texture maps were ignored; only Kd, Ks and Ns are used",
+            "maps of other things than Kd were ignored",
+        ),
+        (
+            "missing-maps",
+            &paint.missing_maps,
+            "pictures of map_Kd cannot be used; Kd alone is",
+        ),
+        (
+            "bad-coordinates",
+            bad_texels,
+            "texture coordinates are no numbers or are missing, and are 0",
         ),
         (
             "unknown-material",
@@ -313,6 +346,9 @@ fn warnings_of(scan: &Scan, paint: &Paint) -> impl Iterator<Item = SceneWarning>
     let all = all.map(|(code, tally, what)| tally.warning(code, what));
     all.into_iter().flatten()
 }
+
+#[cfg(test)]
+mod map_tests;
 
 #[cfg(test)]
 mod tests {
@@ -456,6 +492,14 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
             let missing = || FileError::from(std::io::Error::from(std::io::ErrorKind::NotFound));
             let bytes = self.has(name).then(|| self.0.to_vec());
             Ok((name.to_owned(), bytes.ok_or_else(missing)?))
+        }
+
+        fn has_picture(&self, _: &str, _: &str) -> bool {
+            false
+        }
+
+        fn picture(&self, _: &str, _: &str) -> Result<Vec<u8>, FileError> {
+            Err(std::io::Error::from(std::io::ErrorKind::NotFound).into())
         }
     }
 

@@ -11,6 +11,7 @@ use std::str::FromStr;
 
 use super::library::unquoted;
 use super::lines::{keyword_and_rest, logical_lines, name_without_comment, without_comment};
+use super::map::{self, MapLine};
 use crate::world::material::Material;
 use crate::world::tally::Tally;
 
@@ -24,6 +25,8 @@ const EXPONENT: f32 = 24.0;
 #[derive(Debug, Default)]
 pub(super) struct Materials {
     all: Vec<Material>,
+    /// Of each its `map_Kd`, and the library that has it.
+    maps_of: Vec<Option<(MapLine, String)>>,
     /// By the whole rest of their `newmtl` line.
     by_line: BTreeMap<String, usize>,
     /// By the name without comment and quotes.
@@ -32,7 +35,7 @@ pub(super) struct Materials {
     pub(super) bad: Tally,
     /// Reflectances outside 0..=1.
     pub(super) limited: Tally,
-    /// Texture maps, which are not read.
+    /// Maps of other things than `Kd`, which are not read.
     pub(super) maps: Tally,
     /// Libraries read.
     pub(super) libraries: usize,
@@ -53,14 +56,19 @@ impl Materials {
         self.all[index]
     }
 
+    /// The picture of its base colour, and the name of its library.
+    pub(super) fn map(&self, index: usize) -> Option<&(MapLine, String)> {
+        self.maps_of[index].as_ref()
+    }
+
     /// How many there are.
     pub(super) fn len(&self) -> usize {
         self.all.len()
     }
 
-    /// Adds a library; of equal names the last one counts. `file` names it in
-    /// warnings.
-    pub(super) fn read(&mut self, bytes: &[u8], file: &str) {
+    /// Adds the library that a model calls `library`; of equal names the last one counts.
+    /// `file` names it in warnings.
+    pub(super) fn read(&mut self, bytes: &[u8], library: &str, file: &str) {
         self.libraries += 1;
         let mut scan = Scan::default();
         let lines = match logical_lines(bytes) {
@@ -79,15 +87,19 @@ impl Materials {
         }
         match tobj::load_mtl_buf(&mut scan.valid.as_bytes()) {
             Ok((materials, _)) => {
-                for (material, name) in materials.iter().zip(&scan.names) {
-                    self.take(material, name, file);
+                let maps = scan.maps.iter_mut().map(Option::take);
+                for ((material, name), map) in materials.iter().zip(&scan.names).zip(maps) {
+                    let map = map.map(|m| (m, library.to_owned()));
+                    self.take(material, name, map, file);
                 }
             }
             Err(e) => self.bad.add(|| format!("{file}: tobj: {e}")),
         }
     }
 
-    fn take(&mut self, m: &tobj::Material, name: &str, file: &str) {
+    fn take(&mut self, m: &tobj::Material, name: &str, map: Option<(MapLine, String)>, file: &str) {
+        // A picture shows its own colours.
+        let usual = if map.is_some() { [1.0; 3] } else { GREY };
         let highlights = m.illumination_model.is_none_or(|model| model >= 2);
         let specular = m.specular.filter(|_| highlights).unwrap_or_default();
         let mut reflectance = |rgb: [f64; 3]| {
@@ -98,12 +110,13 @@ impl Materials {
             rgb.map(|v| v.clamp(0.0, 1.0) as f32)
         };
         let material = Material {
-            albedo: reflectance(m.diffuse.unwrap_or(GREY.map(f64::from))),
+            albedo: reflectance(m.diffuse.unwrap_or(usual.map(f64::from))),
             specular: reflectance(specular),
             shininess: m.shininess.map_or(EXPONENT, |n| n as f32).max(1.0),
         };
         let index = self.all.len();
         self.all.push(material);
+        self.maps_of.push(map);
         self.by_line.insert(name.to_owned(), index);
         self.by_name.insert(bare(name).to_owned(), index);
     }
@@ -160,6 +173,8 @@ struct Scan {
     valid: String,
     /// The rest of each `newmtl` line; tobj knows materials by their number.
     names: Vec<String>,
+    /// Of each material its `map_Kd`.
+    maps: Vec<Option<MapLine>>,
     named: bool,
 }
 
@@ -184,10 +199,20 @@ impl Scan {
                 "a whole number 0 to 255 after a newmtl",
                 |_: &u8| true,
             ),
+            base if base.eq_ignore_ascii_case("map_Kd") => self.map(rest),
             map if is_map(map) => Statement::Map,
             other if IGNORED.contains(&other) => Statement::Ignored,
             _ => Statement::Bad("a statement of material libraries"),
         }
+    }
+
+    fn map(&mut self, rest: &str) -> Statement {
+        let named = self.named;
+        match (self.maps.last_mut().filter(|_| named), map::read(rest)) {
+            (Some(own), Some(line)) => *own = Some(line),
+            _ => return Statement::Bad("the name of a picture after a newmtl"),
+        }
+        Statement::Used
     }
 
     fn name(&mut self, name: &str) -> Statement {
@@ -197,6 +222,7 @@ impl Scan {
         }
         let number = self.names.len().to_string();
         self.names.push(name.to_owned());
+        self.maps.push(None);
         self.keep("newmtl", &number)
     }
 
@@ -238,7 +264,7 @@ mod tests {
 
     fn read(text: &str) -> Materials {
         let mut m = Materials::default();
-        m.read(text.as_bytes(), "t.mtl");
+        m.read(text.as_bytes(), "t.mtl", "t.mtl");
         m
     }
 
@@ -268,9 +294,9 @@ mod tests {
     #[test]
     fn what_is_not_valid_is_named_with_its_line() {
         let m = read(
-            "Kd 1 1 1\nnewmtl a\nKd 1 x 1\nKd 2 -1 0.5\nKs nan\nNs -3\nillum few\nnewmtl\nmap_Kd a.png\n",
+            "Kd 1 1 1\nnewmtl a\nKd 1 x 1\nKd 2 -1 0.5\nKs nan\nNs -3\nillum few\nnewmtl\nmap_Ks a.png\nmap_Kd a.png\n",
         );
-        assert_eq!((m.bad.count, m.limited.count, m.maps.count), (6, 1, 1));
+        assert_eq!((m.bad.count, m.limited.count, m.maps.count), (7, 1, 1));
         assert_eq!(
             m.bad.first,
             "t.mtl:1: 'Kd 1 1 1'; expected one or three finite numbers after a newmtl"
@@ -312,7 +338,7 @@ mod tests {
             m.bad.first
         );
         let mut wide = Materials::default();
-        wide.read(b"\xff\xfen\0", "w.mtl");
+        wide.read(b"\xff\xfen\0", "w.mtl", "w.mtl");
         assert!(wide.bad.first.contains("w.mtl: the text is UTF-16"));
     }
 }

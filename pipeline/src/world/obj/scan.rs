@@ -21,6 +21,10 @@ pub(super) struct Scan {
     pub(super) faces: Vec<Face>,
     /// Their corners, face after face: indices into `points`.
     pub(super) corners: Vec<u32>,
+    /// The `vt` lines: u, and v counted from below.
+    pub(super) texels: Vec<[f64; 2]>,
+    /// Of each corner an index into `texels`, from 0; below 0 where it has none.
+    pub(super) corner_texels: Vec<i64>,
     /// The rest of each `mtllib` line, trimmed.
     pub(super) libraries: Vec<String>,
     /// The rest of `usemtl` lines, trimmed, each once.
@@ -29,6 +33,8 @@ pub(super) struct Scan {
     pub(super) skipped: Tally,
     /// Statements that are not read.
     pub(super) unsupported: Tally,
+    /// Texture coordinates that are no numbers, or that there are none of.
+    pub(super) bad_texels: Tally,
     objects: Vec<String>,
     /// Places of names in `materials`.
     material_numbers: BTreeMap<String, u32>,
@@ -59,6 +65,7 @@ impl Scan {
             }
         }
         scan.check_corners(file)?;
+        scan.check_texels();
         Ok(scan)
     }
 
@@ -83,7 +90,8 @@ impl Scan {
                 .push(lines::name_without_comment(rest).to_owned()),
             "mtllib" => self.libraries.push(rest.to_owned()),
             "usemtl" => self.use_material(rest),
-            "vn" | "vt" | "vp" | "s" | "l" | "p" => {}
+            "vt" => self.texel(number, without_comment(rest)),
+            "vn" | "vp" | "s" | "l" | "p" => {}
             other => self
                 .unsupported
                 .add(|| format!("'{other}' in line {number}")),
@@ -122,15 +130,48 @@ impl Scan {
         Ok(())
     }
 
+    /// `vt u v`; v is 0 where it is not given. What is wrong is (0, 0): a model without its
+    /// paint is still a model.
+    fn texel(&mut self, line: usize, rest: &str) {
+        let mut words = rest.split_whitespace();
+        let number = |word: Option<&str>| match word {
+            Some(word) => word.parse().ok().filter(|v: &f64| v.abs() <= LARGEST),
+            None => Some(0.0),
+        };
+        let first = words.next();
+        let read = match (first.and_then(|w| number(Some(w))), number(words.next())) {
+            (Some(u), Some(v)) => [u, v],
+            _ => {
+                self.bad_texels.add(|| format!("line {line}"));
+                [0.0; 2]
+            }
+        };
+        self.texels.push(read);
+    }
+
+    /// As [`Self::check_corners`], of texture coordinates: those that there are not are left
+    /// out.
+    fn check_texels(&mut self) {
+        let count = self.texels.len() as i64;
+        for texel in &mut self.corner_texels {
+            if *texel >= count {
+                (self.bad_texels).add(|| format!("vt {} of {count}", *texel + 1));
+                *texel = -1;
+            }
+        }
+    }
+
     fn face(&mut self, line: usize, rest: &str) -> Result<(), ObjProblem> {
         let before = self.corners.len();
         for word in rest.split_whitespace() {
             self.corners.push(corner(word, self.points.len())?);
+            self.corner_texels.push(texel(word, self.texels.len()));
         }
         let corners = self.corners.len() - before;
         if corners < 3 {
             self.skipped.add(|| format!("line {line}"));
             self.corners.truncate(before);
+            self.corner_texels.truncate(before);
             return Ok(());
         }
         self.faces.push(Face {
@@ -180,4 +221,17 @@ fn corner(word: &str, vertices: usize) -> Result<u32, ObjProblem> {
         ObjProblem::OutOfRange { index, vertices }
     };
     u32::try_from(absolute).map_err(|_| too_far)
+}
+
+/// The place of a corner's texture coordinates after that many `texels`; below 0 where it
+/// has none.
+fn texel(word: &str, texels: usize) -> i64 {
+    let index: i64 = match word.split('/').nth(1).map(str::parse) {
+        Some(Ok(index)) => index,
+        _ => return -1,
+    };
+    match index {
+        1.. => index - 1,
+        _ => index.saturating_add(if index < 0 { texels as i64 } else { -1 }),
+    }
 }

@@ -36,12 +36,34 @@ const GROUND: Material = Material::matt([0.6, 0.62, 0.65]);
 /// # Errors
 /// The file cannot be read or holds no valid mesh.
 pub fn load_and_frame(path: &Path, outside: Outside) -> Result<Scene, ModelError> {
-    let read = model::load_given(path, outside)?;
+    Ok(load_at(path, outside, 0.0)?.0)
+}
+
+/// The same at a time of the model's animation, in seconds, and whether it is another at
+/// another time. What is chosen for a model is that of time 0: it moves in the frame, not
+/// the frame with it, and lights keep their brightness.
+///
+/// # Errors
+/// As [`load_and_frame`].
+pub(super) fn load_at(
+    path: &Path,
+    outside: Outside,
+    time: f64,
+) -> Result<(Scene, bool), ModelError> {
+    let mut read = model::load_given_at(path, outside, time)?;
+    let first = match read.moves && time != 0.0 {
+        true => model::load_given(path, outside)?,
+        false => read.clone(),
+    };
+    for (light, first) in read.lights.iter_mut().zip(&first.lights) {
+        light.colour = first.colour;
+    }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    Ok(match &read.camera {
-        Some(camera) => as_written(&stem, camera.into(), &read),
-        None => framed(&stem, &read),
-    })
+    let scene = match &read.camera {
+        Some(camera) => as_written(&stem, camera.into(), (&read, &first)),
+        None => framed(&stem, &read, Frame::of(&first)),
+    };
+    Ok((scene, read.moves))
 }
 
 /// Scales `model` to a largest extent of 2, stands it on a ground plane at
@@ -55,13 +77,14 @@ pub fn frame_model(name: &str, model: Shape) -> Scene {
         name: name.to_owned(),
         shape: model,
         parts: Vec::new(),
+        coordinates: Vec::new(),
     };
-    framed(name, &Model::of(piece, Vec::new()))
+    let model = Model::of(piece, Vec::new());
+    framed(name, &model, Frame::of(&model))
 }
 
 /// The model on a ground plane.
-fn framed(name: &str, model: &Model) -> Scene {
-    let frame = Frame::of(model);
+fn framed(name: &str, model: &Model, frame: Frame) -> Scene {
     let height = frame.height;
     let camera = camera(height);
     let ground = ground_across(camera.target - camera.eye);
@@ -110,7 +133,7 @@ pub(super) fn turn_ground(scene: &mut Scene) {
 }
 
 /// The file's own scene, in its own units.
-fn as_written(name: &str, camera: Camera, model: &Model) -> Scene {
+fn as_written(name: &str, camera: Camera, (model, first): (&Model, &Model)) -> Scene {
     let creased = |shape: Shape| shape.into_mesh(CREASES).expect("the reader bounds it");
     let pieces = model.pieces.iter();
     let objects = pieces
@@ -118,7 +141,7 @@ fn as_written(name: &str, camera: Camera, model: &Model) -> Scene {
         .collect();
     let mut lights = model.lights.clone();
     if lights.is_empty() {
-        lights.push(light_above(model));
+        lights.push(light_above(first));
     }
     finished(name, Scene::new(camera, lights, objects), model)
 }
@@ -135,6 +158,9 @@ fn object(piece: &Piece, mesh: Mesh) -> Object {
     let mut object = Object::new(piece.name.clone(), mesh, MODEL);
     object.open = true;
     object.parts.clone_from(&piece.parts);
+    if piece.parts.iter().any(|p| p.texture.is_some()) {
+        object.coordinates = Some(piece.coordinates.as_slice().into());
+    }
     object
 }
 

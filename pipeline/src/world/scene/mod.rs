@@ -28,6 +28,7 @@ pub use source::SceneSource;
 pub use view::{View, ViewError};
 
 pub use crate::world::material::{Material, MaterialPart};
+pub use crate::world::texture::{CornerCoordinates, SurfaceTexture};
 pub use crate::world::warning::SceneWarning;
 
 use crate::world::environment::{MapSource, PlacedEnvironment};
@@ -138,6 +139,8 @@ pub struct Object {
     pub material: Material,
     /// Triangles that are shaded differently; each is in one part at most.
     pub parts: Vec<MaterialPart>,
+    /// Of each triangle the texture coordinates of its corners; none where the mesh has none.
+    pub coordinates: Option<Arc<[CornerCoordinates]>>,
     /// Where the object was before it moved as a whole, if that is known.
     pub rest: Option<Rest>,
     /// Whether it may cast though its mesh is not closed, by its generalised silhouette.
@@ -154,6 +157,7 @@ impl Object {
             receives: true,
             material,
             parts: Vec::new(),
+            coordinates: None,
             rest: None,
             open: false,
         }
@@ -170,12 +174,19 @@ impl Object {
         }
         let rest = MaterialPart {
             material: self.material,
+            texture: None,
             triangles: (0..count).filter(|&t| own[t as usize]).collect(),
         };
         std::iter::once(rest)
             .chain(self.parts.iter().cloned())
             .filter(|p| !p.triangles.is_empty())
             .collect()
+    }
+
+    /// Texture coordinates of a triangle's corners; zeros where there are none.
+    pub fn coordinates_of(&self, triangle: u32) -> CornerCoordinates {
+        let all = self.coordinates.as_deref().unwrap_or_default();
+        all.get(triangle as usize).copied().unwrap_or_default()
     }
 
     /// The same object, casting nothing (sheets such as floors).

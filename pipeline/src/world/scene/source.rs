@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use super::builtin::{self, BuiltinScene};
 use super::file::{self, Moment};
-use super::{Scene, SceneError, View, load_and_frame};
+use super::frame_model::load_at;
+use super::{Scene, SceneError, View};
 use crate::world::files::Outside;
 use crate::world::model;
 use crate::world::scene::environment::{EnvironmentRequest, FittedMaps};
@@ -30,7 +31,13 @@ enum Kind {
         text: String,
         outside: Outside,
     },
+    /// A model that is the same at all times.
     Model(Box<Scene>),
+    /// A model that moves.
+    Moving {
+        path: PathBuf,
+        outside: Outside,
+    },
 }
 
 impl SceneSource {
@@ -56,7 +63,13 @@ impl SceneSource {
                 text: file::read(path)?,
                 outside,
             },
-            _ if model::is_model(path) => Kind::Model(Box::new(load_and_frame(path, outside)?)),
+            _ if model::is_model(path) => match load_at(path, outside, 0.0)? {
+                (scene, false) => Kind::Model(Box::new(scene)),
+                (_, true) => Kind::Moving {
+                    path: path.to_owned(),
+                    outside,
+                },
+            },
             _ => Kind::Builtin(builtin::find(name)?),
         };
         Ok(Self {
@@ -104,11 +117,12 @@ impl SceneSource {
             }
             Kind::Builtin(entry) => entry.at(time),
             Kind::Model(scene) => (**scene).clone(),
+            Kind::Moving { path, outside } => load_at(path, *outside, time)?.0,
         };
         if let Some(environment) = &self.environment {
             environment.light(&mut scene, &mut self.maps)?;
         }
-        let framed = matches!(self.kind, Kind::Model(_));
+        let framed = matches!(self.kind, Kind::Model(_) | Kind::Moving { .. });
         self.view.apply(&mut scene, framed)?;
         Ok(scene)
     }

@@ -85,6 +85,11 @@ impl<'a> Buffers<'a> {
         Ok(&whole[..end as usize])
     }
 
+    /// The bytes of a picture that a URI names.
+    pub(super) fn picture(&mut self, uri: &str) -> Result<Vec<u8>, GltfProblem> {
+        self.load(uri)
+    }
+
     fn load(&mut self, text: &str) -> Result<Vec<u8>, GltfProblem> {
         let bytes = match (uri::read(text), &self.beside) {
             (Ok(Uri::Data(bytes)), _) => bytes,

@@ -8,10 +8,12 @@ use super::accessor;
 use super::buffers::Buffers;
 use super::error::{Checked, GltfProblem, element};
 use super::notes::Notes;
-use super::schema::{Primitive, Root};
+use super::schema::{Primitive, Root, TextureOfMaterial};
+use super::texture;
 use crate::world::faces::{Triangles, compact, first_equals};
 use crate::world::model::piece::MOST;
 use crate::world::shape::Shape;
+use crate::world::texture::CornerCoordinates;
 
 const TRIANGLES: u32 = 4;
 const STRIP: u32 = 5;
@@ -23,6 +25,15 @@ pub(super) struct Local {
     pub(super) shape: Shape,
     /// For each material in use its triangles.
     pub(super) painted: Vec<(usize, Vec<u32>)>,
+    /// Of each triangle its texture coordinates; empty where no primitive has any.
+    pub(super) coordinates: Vec<CornerCoordinates>,
+}
+
+/// A triangle as a primitive has it.
+struct Corners {
+    points: [u32; 3],
+    material: Option<usize>,
+    coordinates: CornerCoordinates,
 }
 
 /// The points of a mesh: primitives that share an accessor share its points.
@@ -31,6 +42,8 @@ struct Points {
     all: Vec<DVec3>,
     /// Of each accessor the number of its first point, and how many it has.
     places: BTreeMap<usize, (u32, usize)>,
+    /// Texture coordinates by their accessor.
+    coordinates: BTreeMap<usize, Vec<[f32; 2]>>,
 }
 
 /// Reads meshes, and bounds what they add up to.
@@ -62,11 +75,28 @@ impl Reader {
             let indices = self.indices(root, buffers, primitive, count, &place)?;
             let mode = primitive.mode.unwrap_or(TRIANGLES);
             let cut = notes_cut(mode, indices.len());
-            notes.cut.add_many(usize::from(cut), || place);
-            let moved = triangles(mode, &indices).into_iter();
-            corners.extend(moved.map(|t| (t.map(|c| c + base), primitive.material)));
+            notes.cut.add_many(usize::from(cut), || place.clone());
+            let textured = self.coordinates(root, buffers, primitive, &mut points, &place)?;
+            let transform = base_color(root, primitive).and_then(|t| t.extensions.transform);
+            let at = |c: u32| textured.get(c as usize).copied().unwrap_or_default();
+            let moved = triangles(mode, &indices).into_iter().map(|t| {
+                let mut coordinates = t.map(at);
+                if let Some(transform) = &transform {
+                    texture::transform(transform, &mut coordinates);
+                }
+                Corners {
+                    points: t.map(|c| c + base),
+                    material: primitive.material,
+                    coordinates,
+                }
+            });
+            corners.extend(moved);
         }
-        Ok(solid(&points.all, &corners, notes, index))
+        let mut solid = solid(&points.all, &corners, notes, index);
+        if points.coordinates.is_empty() {
+            solid.coordinates = Vec::new();
+        }
+        Ok(solid)
     }
 
     /// The number of the first point of a primitive, and how many it has.
@@ -98,6 +128,32 @@ impl Reader {
         points.all.extend(own.into_iter().map(DVec3::from));
         points.places.insert(position, known);
         Ok(known)
+    }
+
+    /// Texture coordinates of a primitive's points: the set of its material's base colour.
+    fn coordinates<'p>(
+        &mut self,
+        root: &Root,
+        buffers: &mut Buffers<'_>,
+        primitive: &Primitive,
+        points: &'p mut Points,
+        place: &str,
+    ) -> Checked<&'p [[f32; 2]]> {
+        let set = base_color(root, primitive).map_or(0, texture::set);
+        let Some(accessor) = texture::accessor(&primitive.attributes, set) else {
+            return Ok(&[]);
+        };
+        if !points.coordinates.contains_key(&accessor) {
+            let place = format!("{place}.attributes.TEXCOORD_{set}");
+            let left = MOST - self.vertices;
+            let read: Vec<[f64; 2]> =
+                accessor::read(root, buffers, accessor, "VEC2", left, &place)?;
+            self.vertices += read.len() as u64;
+            let finite = |v: f64| if v.is_finite() { v as f32 } else { 0.0 };
+            let own = read.into_iter().map(|at| at.map(finite)).collect();
+            points.coordinates.insert(accessor, own);
+        }
+        Ok(&points.coordinates[&accessor])
     }
 
     fn indices(
@@ -132,6 +188,12 @@ impl Reader {
             }
         }
     }
+}
+
+/// The texture of a primitive's base colour.
+fn base_color<'r>(root: &'r Root, primitive: &Primitive) -> Option<&'r TextureOfMaterial> {
+    let material = root.materials.get(primitive.material?)?;
+    material.pbr_metallic_roughness.base_color_texture.as_ref()
 }
 
 /// Whether a primitive has triangles; what else it has is noted.
@@ -182,23 +244,22 @@ fn triangles(mode: u32, c: &[u32]) -> Vec<[u32; 3]> {
 }
 
 /// Points of equal places are one: vertices are doubled where a texture has a seam.
-fn solid(
-    points: &[DVec3],
-    corners: &[([u32; 3], Option<usize>)],
-    notes: &mut Notes,
-    mesh: usize,
-) -> Local {
+fn solid(points: &[DVec3], corners: &[Corners], notes: &mut Notes, mesh: usize) -> Local {
     let first = first_equals(points);
     let mut triangles = Triangles::default();
     let mut local = Local::default();
-    for (triangle, material) in corners {
-        let mut corners = triangle.map(|c| first[c as usize]).to_vec();
+    for triangle in corners {
+        let mut corners = triangle.points.map(|c| first[c as usize]).to_vec();
         let number = triangles.corners.len() as u32;
         let made = triangles.face(&mut corners, points, || format!("meshes[{mesh}]"));
-        if let (Some(material), 1) = (material, made) {
-            match local.painted.iter_mut().find(|(m, _)| m == material) {
+        if made != 1 {
+            continue;
+        }
+        local.coordinates.push(triangle.coordinates);
+        if let Some(material) = triangle.material {
+            match local.painted.iter_mut().find(|(m, _)| *m == material) {
                 Some((_, own)) => own.push(number),
-                None => local.painted.push((*material, vec![number])),
+                None => local.painted.push((material, vec![number])),
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Models and scenes from glTF 2.0 files: `.gltf` and `.glb`.
 //!
 //! The nodes of the file's scene are drawn with their transforms, in metres and y up as
-//! they are written: triangles in lists, strips and fans, base colour factors, the first
+//! they are written: triangles in lists, strips and fans, base colours with their textures, the first
 //! camera in perspective, lights of `KHR_lights_punctual` and `EXT_lights_area`, positions
 //! of `KHR_mesh_quantization`. A face has no back: all are drawn from both sides, whether or
 //! not `doubleSided` is set, and normals are this crate's own. What else a file has is told
@@ -19,7 +19,9 @@ mod light;
 mod mesh;
 mod nodes;
 mod notes;
+mod pose;
 mod schema;
+mod texture;
 mod uri;
 
 use std::collections::BTreeMap;
@@ -29,16 +31,19 @@ use glam::DMat4;
 
 pub use error::{GltfError, GltfProblem};
 pub(crate) use light::distance;
+pub(crate) use texture::SMALLEST;
 
 use super::piece::{MOST, Model, Piece};
 use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::material::{Material, MaterialPart};
+use crate::world::texture::turned_round;
 use buffers::{Beside, Buffers};
 use error::{Checked, element};
 use mesh::{Local, Reader};
 use nodes::Placed;
 use notes::Notes;
 use schema::Root;
+use texture::Pictures;
 
 /// Bytes of a file that are read at most, without buffers that are files of their own.
 pub const MAX_GLTF_BYTES: u64 = 256 << 20;
@@ -52,35 +57,35 @@ pub const SUPPORTED: [&str; 4] = [
     "KHR_lights_punctual",
     "EXT_lights_area",
     "KHR_mesh_quantization",
-    // Textures are not drawn.
     "KHR_texture_transform",
 ];
 
 /// Largest coordinate: what f32 holds.
 const LARGEST: f64 = f32::MAX as f64;
 
-/// Reads a file that the user names; its buffers must lie in its folder, unless more is
+/// Reads a file that the user names, as it is at `time`, in seconds; its buffers must lie in its folder, unless more is
 /// allowed.
 ///
 /// # Errors
 /// See [`GltfProblem`].
-pub fn load_given(path: &Path, outside: Outside) -> Result<Model, GltfError> {
+pub fn load_given(path: &Path, outside: Outside, time: f64) -> Result<Model, GltfError> {
     let folder = SceneFolder::of(path, outside);
-    of_bytes(files::read(path, MAX_GLTF_BYTES), path, &folder)
+    of_bytes(files::read(path, MAX_GLTF_BYTES), path, &folder, time)
 }
 
-/// Reads a file that a scene in `folder` names.
+/// Reads a file that a scene in `folder` names, as it is at `time`.
 ///
 /// # Errors
 /// See [`GltfProblem`].
-pub fn load_from(path: &Path, folder: &SceneFolder) -> Result<Model, GltfError> {
-    of_bytes(folder.read(path, MAX_GLTF_BYTES), path, folder)
+pub fn load_from(path: &Path, folder: &SceneFolder, time: f64) -> Result<Model, GltfError> {
+    of_bytes(folder.read(path, MAX_GLTF_BYTES), path, folder, time)
 }
 
 fn of_bytes(
     bytes: Result<Vec<u8>, FileError>,
     path: &Path,
     folder: &SceneFolder,
+    time: f64,
 ) -> Result<Model, GltfError> {
     let file = path.display().to_string();
     let bytes = bytes.map_err(|e| GltfError {
@@ -88,7 +93,7 @@ fn of_bytes(
         place: String::new(),
         problem: e.into(),
     })?;
-    parse_with(&bytes, &file, Some(Beside { path, folder }))
+    parse_with(&bytes, &file, Some(Beside { path, folder }), time)
 }
 
 /// Reads a file's bytes; buffers that are files of their own are an error. `file` names it
@@ -97,18 +102,31 @@ fn of_bytes(
 /// # Errors
 /// See [`GltfProblem`].
 pub fn parse(bytes: &[u8], file: &str) -> Result<Model, GltfError> {
-    parse_with(bytes, file, None)
+    parse_at(bytes, file, 0.0)
 }
 
-fn parse_with(bytes: &[u8], file: &str, beside: Option<Beside<'_>>) -> Result<Model, GltfError> {
-    model(bytes, beside).map_err(|e| GltfError {
+/// The same at a time, in seconds.
+///
+/// # Errors
+/// See [`GltfProblem`].
+pub fn parse_at(bytes: &[u8], file: &str, time: f64) -> Result<Model, GltfError> {
+    parse_with(bytes, file, None, time)
+}
+
+fn parse_with(
+    bytes: &[u8],
+    file: &str,
+    beside: Option<Beside<'_>>,
+    time: f64,
+) -> Result<Model, GltfError> {
+    model(bytes, beside, time).map_err(|e| GltfError {
         file: file.to_owned(),
         place: e.place,
         problem: e.problem,
     })
 }
 
-fn model(bytes: &[u8], beside: Option<Beside<'_>>) -> Checked<Model> {
+fn model(bytes: &[u8], beside: Option<Beside<'_>>, time: f64) -> Checked<Model> {
     let (json, own) = container::parts(bytes).map_err(|p| p.at(""))?;
     check_json(json, MAX_JSON).map_err(|p| p.at(""))?;
     let root: Root = serde_json::from_slice(json).map_err(|e| GltfProblem::from(e).at(""))?;
@@ -118,10 +136,11 @@ fn model(bytes: &[u8], beside: Option<Beside<'_>>) -> Checked<Model> {
         buffers: Buffers::new(&root, own, beside),
         reader: Reader::default(),
         meshes: BTreeMap::new(),
+        pictures: Pictures::default(),
         notes: Notes::default(),
         triangles: 0,
     };
-    build.model()
+    build.model(time)
 }
 
 /// Refuses JSON that has more in it than the limit, before it is read.
@@ -162,15 +181,17 @@ struct Build<'a> {
     reader: Reader,
     /// Those that were read.
     meshes: BTreeMap<usize, Local>,
+    pictures: Pictures,
     notes: Notes,
     /// Triangles of all nodes so far.
     triangles: u64,
 }
 
 impl Build<'_> {
-    fn model(&mut self) -> Checked<Model> {
+    fn model(&mut self, time: f64) -> Checked<Model> {
+        let pose = pose::pose(self.root, &mut self.buffers, time, &mut self.notes)?;
         let (mut pieces, mut sources, mut camera) = (Vec::new(), Vec::new(), None);
-        for placed in nodes::placed(self.root)? {
+        for placed in nodes::placed(self.root, &pose)? {
             pieces.extend(self.piece(&placed)?);
             sources.extend(light::at(self.root, &placed, &mut self.notes)?);
             camera = camera::at(self.root, &placed, camera, &mut self.notes)?;
@@ -179,6 +200,7 @@ impl Build<'_> {
             pieces,
             camera,
             lights: Vec::new(),
+            moves: !pose.is_empty(),
             warnings: self.notes.warnings(self.root, &SUPPORTED),
         };
         let bounds = model.bounds().ok_or_else(|| GltfProblem::NoFaces.at(""))?;
@@ -208,6 +230,10 @@ impl Build<'_> {
             model_from_node = DMat4::IDENTITY;
         }
         let parts = self.parts(&local)?;
+        let mut coordinates = local.coordinates;
+        if model_from_node.determinant() < 0.0 {
+            turned_round(&mut coordinates);
+        }
         let shape = local.shape.transformed(model_from_node);
         let fits = |p: &glam::DVec3| p.to_array().iter().all(|c| c.abs() <= LARGEST);
         if !shape.positions.iter().all(fits) {
@@ -224,6 +250,7 @@ impl Build<'_> {
             name: name.unwrap_or_else(|| format!("node {}", placed.number)),
             shape,
             parts,
+            coordinates,
         }))
     }
 
@@ -241,13 +268,23 @@ impl Build<'_> {
         let part = |(number, triangles): &(usize, Vec<u32>)| {
             let materials = &self.root.materials;
             let material = element(materials, *number, "materials", "a primitive")?;
-            let [r, g, b, _] = (material.pbr_metallic_roughness)
-                .base_color_factor
-                .unwrap_or([1.0; 4]);
+            let pbr = &material.pbr_metallic_roughness;
+            let [r, g, b, _] = pbr.base_color_factor.unwrap_or([1.0; 4]);
+            let texture = match &pbr.base_color_texture {
+                Some(of) => self.pictures.texture(
+                    self.root,
+                    &mut self.buffers,
+                    of,
+                    &mut self.notes,
+                    &format!("materials[{number}]"),
+                )?,
+                None => None,
+            };
             let out = [r, g, b].iter().any(|c| !(0.0..=1.0).contains(c));
             (self.notes.limited).add_many(usize::from(out), || format!("materials[{number}]"));
             Ok(MaterialPart {
                 material: Material::matt([r, g, b].map(|c| c.clamp(0.0, 1.0) as f32)),
+                texture,
                 triangles: triangles.clone(),
             })
         };

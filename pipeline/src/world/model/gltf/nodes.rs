@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec3, DVec4};
 
 use super::error::{Checked, GltfProblem, element};
+use super::pose::{Moved, Pose};
 use super::schema::{Node, Root};
 
 /// A node, and the model's coordinates from its own.
@@ -12,8 +13,8 @@ pub(super) struct Placed<'a> {
     pub(super) model_from_node: DMat4,
 }
 
-/// The nodes of the file's scene, parents before their children, in the file's order.
-pub(super) fn placed(root: &Root) -> Checked<Vec<Placed<'_>>> {
+/// The nodes of the file's scene in a pose, parents before their children, in the file's order.
+pub(super) fn placed<'a>(root: &'a Root, pose: &Pose) -> Checked<Vec<Placed<'a>>> {
     let (roots, place) = roots(root)?;
     let mut met = vec![false; root.nodes.len()];
     let mut stack = Vec::new();
@@ -23,7 +24,7 @@ pub(super) fn placed(root: &Root) -> Checked<Vec<Placed<'_>>> {
     while let Some((number, parent)) = stack.pop() {
         let node = &root.nodes[number];
         let place = || format!("nodes[{number}]");
-        let model_from_node = parent * local(node, &place())?;
+        let model_from_node = parent * local(node, pose.get(&number), &place())?;
         meet(&mut met, &node.children, place)?;
         let children = node.children.iter().rev();
         stack.extend(children.map(|n| (*n, model_from_node)));
@@ -69,9 +70,10 @@ fn roots(root: &Root) -> Checked<(Vec<usize>, String)> {
     Ok((scene.nodes.clone(), format!("scenes[{number}].nodes")))
 }
 
-/// A node's own matrix, or translation, rotation and scale.
-fn local(node: &Node, place: &str) -> Checked<DMat4> {
-    if let Some(matrix) = node.matrix {
+/// A node's own matrix, or translation, rotation and scale, as an animation has `moved` them.
+fn local(node: &Node, moved: Option<&Moved>, place: &str) -> Checked<DMat4> {
+    let moved = moved.copied();
+    if let (Some(matrix), None) = (node.matrix, moved) {
         let columns = DMat4::from_cols_array(&matrix);
         if columns.row(3) != DVec4::W || !columns.is_finite() {
             let (what, value) = ("matrix", format!("{matrix:?}"));
@@ -80,9 +82,12 @@ fn local(node: &Node, place: &str) -> Checked<DMat4> {
         }
         return Ok(columns);
     }
-    let offset = DVec3::from(node.translation.unwrap_or([0.0; 3]));
-    let scale = DVec3::from(node.scale.unwrap_or([1.0; 3]));
-    let turn = match node.rotation {
+    let moved = moved.unwrap_or_default();
+    let offset = moved.translation.or(node.translation);
+    let offset = DVec3::from(offset.unwrap_or([0.0; 3]));
+    let scale = moved.scale.or(node.scale);
+    let scale = DVec3::from(scale.unwrap_or([1.0; 3]));
+    let turn = match moved.rotation.or(node.rotation) {
         Some(q) => rotation(q).ok_or_else(|| {
             let (what, value) = ("rotation", format!("{q:?}"));
             let valid = "a quaternion x, y, z, w that is not 0";

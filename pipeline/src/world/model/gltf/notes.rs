@@ -25,6 +25,10 @@ pub(super) struct Notes {
     pub(super) spots: Tally,
     /// Lights that are brighter nearby.
     pub(super) falloff: Tally,
+    /// Channels of an animation that move no node.
+    pub(super) channels: Tally,
+    /// Pictures that cannot be used.
+    pub(super) missing_maps: Tally,
     /// Base colours outside 0..=1.
     pub(super) limited: Tally,
 }
@@ -53,7 +57,11 @@ impl Notes {
             ),
             animations(root).warning(
                 "ignored-animations",
-                "animations were ignored; nodes stand as they are written",
+                "animations after the first were ignored; that one is played",
+            ),
+            self.channels.warning(
+                "ignored-channels",
+                "channels of an animation that move no node, such as weights of morph targets, were ignored",
             ),
             self.colours.warning(
                 "ignored-colours",
@@ -61,7 +69,11 @@ impl Notes {
             ),
             maps.warning(
                 "ignored-maps",
-                "textures were ignored; base colour factors are used",
+                "textures of other things than base colours were ignored",
+            ),
+            self.missing_maps.warning(
+                "missing-maps",
+                "pictures of base colours cannot be used; their factors alone are",
             ),
             glow.warning("ignored-emission", "surfaces that shine light nothing"),
             glass.warning(
@@ -89,7 +101,8 @@ impl Notes {
 
 fn animations(root: &Root) -> Tally {
     let mut tally = Tally::default();
-    tally.add_many(root.animations.len(), || "animations[0]".to_owned());
+    let others = root.animations.len().saturating_sub(1);
+    tally.add_many(others, || "animations[1]".to_owned());
     tally
 }
 
@@ -113,7 +126,6 @@ fn materials(root: &Root) -> [Tally; 3] {
 fn has_maps(material: &Material) -> bool {
     let pbr = &material.pbr_metallic_roughness;
     let textures = [
-        &pbr.base_color_texture,
         &pbr.metallic_roughness_texture,
         &material.normal_texture,
         &material.emissive_texture,

@@ -19,8 +19,11 @@ pub(super) struct Root {
     pub(super) buffer_views: Vec<BufferView>,
     pub(super) buffers: Vec<Buffer>,
     pub(super) materials: Vec<Material>,
+    pub(super) textures: Vec<Texture>,
+    pub(super) images: Vec<Image>,
+    pub(super) samplers: Vec<TextureSampler>,
     pub(super) cameras: Vec<Camera>,
-    pub(super) animations: Vec<IgnoredAny>,
+    pub(super) animations: Vec<Animation>,
     pub(super) extensions: RootExtensions,
 }
 
@@ -135,6 +138,14 @@ pub(super) struct Attributes {
     pub(super) position: Option<usize>,
     #[serde(rename = "COLOR_0")]
     pub(super) color: Option<usize>,
+    #[serde(rename = "TEXCOORD_0")]
+    pub(super) first: Option<usize>,
+    #[serde(rename = "TEXCOORD_1")]
+    pub(super) second: Option<usize>,
+    #[serde(rename = "TEXCOORD_2")]
+    pub(super) third: Option<usize>,
+    #[serde(rename = "TEXCOORD_3")]
+    pub(super) fourth: Option<usize>,
 }
 
 #[derive(Default, Deserialize)]
@@ -198,7 +209,7 @@ pub(super) struct Material {
 #[serde(rename_all = "camelCase", default)]
 pub(super) struct Pbr {
     pub(super) base_color_factor: Option<[f64; 4]>,
-    pub(super) base_color_texture: Option<IgnoredAny>,
+    pub(super) base_color_texture: Option<TextureOfMaterial>,
     pub(super) metallic_roughness_texture: Option<IgnoredAny>,
 }
 
@@ -212,4 +223,90 @@ pub(super) struct Camera {
 pub(super) struct Perspective {
     pub(super) yfov: f64,
     pub(super) znear: f64,
+}
+
+/// A texture as a material has it.
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct TextureOfMaterial {
+    pub(super) index: usize,
+    pub(super) tex_coord: usize,
+    pub(super) extensions: TextureExtensions,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub(super) transform: Option<TextureTransform>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct TextureTransform {
+    pub(super) offset: [f64; 2],
+    pub(super) rotation: f64,
+    pub(super) scale: [f64; 2],
+    pub(super) tex_coord: Option<usize>,
+}
+
+impl Default for TextureTransform {
+    fn default() -> Self {
+        Self {
+            offset: [0.0; 2],
+            rotation: 0.0,
+            scale: [1.0; 2],
+            tex_coord: None,
+        }
+    }
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Texture {
+    pub(super) source: Option<usize>,
+    pub(super) sampler: Option<usize>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Image {
+    pub(super) uri: Option<String>,
+    pub(super) buffer_view: Option<usize>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct TextureSampler {
+    pub(super) mag_filter: Option<u32>,
+    pub(super) min_filter: Option<u32>,
+    pub(super) wrap_s: Option<u32>,
+    pub(super) wrap_t: Option<u32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Animation {
+    pub(super) channels: Vec<Channel>,
+    pub(super) samplers: Vec<AnimationSampler>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Channel {
+    pub(super) sampler: usize,
+    pub(super) target: Target,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Target {
+    pub(super) node: Option<usize>,
+    pub(super) path: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct AnimationSampler {
+    pub(super) input: usize,
+    pub(super) output: usize,
+    pub(super) interpolation: Option<String>,
 }

@@ -394,7 +394,7 @@ fn what_is_not_drawn_is_told_once() {
             "ignored-extensions",
         ]
     );
-    assert_eq!(model.warnings[2].count, 2);
+    assert_eq!(model.warnings[2].count, 1, "the first one is played");
     assert_eq!(
         model.bounds().unwrap().0.y,
         0.0,
@@ -719,5 +719,259 @@ fn numbers(value: &Value, at: String, places: &mut Vec<String>) {
             }
         }
         _ => {}
+    }
+}
+
+/// A picture of two texels: red, blue.
+fn png() -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_raw(2, 1, vec![255, 0, 0, 0, 0, 255]).unwrap();
+    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+const TEXELS: [[f32; 2]; 4] = [[0.25, 0.5], [1.0, 0.0], [0.0, 2.0], [-1.0, 1.0]];
+
+/// The file with coordinates and a picture in its buffer, whose material is `material`.
+fn textured(material: Value, changes: &[(&str, Value)]) -> Result<Model, GltfError> {
+    let mut data = buffer();
+    let at = data.len();
+    data.extend(TEXELS.concat().iter().flat_map(|v| v.to_le_bytes()));
+    let picture = png();
+    data.extend(&picture);
+    let view =
+        |at: usize, length: usize| json!({"buffer": 0, "byteOffset": at, "byteLength": length});
+    let mut all = vec![
+        ("/bufferViews/-", view(at, 32)),
+        ("/bufferViews/-", view(at + 32, picture.len())),
+        ("/buffers/0/byteLength", json!(data.len())),
+        (
+            "/accessors/-",
+            json!({"bufferView": 4, "componentType": 5126, "count": 4, "type": "VEC2"}),
+        ),
+        ("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(2)),
+        ("/meshes/0/primitives/0/material", json!(0)),
+        ("/materials", json!([material])),
+        ("/textures", json!([{"source": 0, "sampler": 0}])),
+        (
+            "/images",
+            json!([{"bufferView": 5, "mimeType": "image/png"}]),
+        ),
+        ("/samplers", json!([{"wrapS": 33071, "magFilter": 9728}])),
+    ];
+    all.extend(changes.iter().cloned());
+    parse(&glb(&with(&all), &data), "t.glb")
+}
+
+fn base_color(texture: Value) -> Value {
+    json!({"pbrMetallicRoughness": {"baseColorTexture": texture}})
+}
+
+#[test]
+fn base_colours_have_their_pictures_where_coordinates_say() {
+    let model = textured(base_color(json!({"index": 0})), &[]).unwrap();
+    assert_eq!(codes(&model), [""; 0]);
+    let piece = &model.pieces[0];
+    let texture = piece.parts[0].texture.as_ref().unwrap();
+    assert_eq!(texture.picture.encoded(), png());
+    assert_eq!(
+        texture.sampler.address[0],
+        gnomon_raster::AddressMode::ClampToEdge
+    );
+    assert_eq!(texture.sampler.mag, gnomon_raster::FilterMode::Nearest);
+    let expected = TRIANGLES.map(|t| t.map(|v| TEXELS[v as usize]));
+    assert_eq!(piece.coordinates, expected);
+    // A mirrored node turns triangles round, and their coordinates with them.
+    let node = json!({"mesh": 0, "scale": [-1, 1, 1]});
+    let mirrored = textured(base_color(json!({"index": 0})), &[("/nodes/0", node)]).unwrap();
+    let turned = TRIANGLES.map(|[a, b, c]| [a, c, b].map(|v| TEXELS[v as usize]));
+    assert_eq!(mirrored.pieces[0].coordinates, turned);
+    // KHR_texture_transform, and coordinates of another set that there is none of.
+    let moved = json!({"index": 0, "extensions": {"KHR_texture_transform": {"offset": [1, 0], "scale": [2, 1]}}});
+    let moved = textured(base_color(moved), &[]).unwrap();
+    let expected = expected.map(|t| t.map(|[u, v]| [2.0 * u + 1.0, v]));
+    assert_eq!(moved.pieces[0].coordinates, expected);
+    let other = textured(base_color(json!({"index": 0, "texCoord": 1})), &[]).unwrap();
+    assert_eq!(other.pieces[0].coordinates, [[[0.0; 2]; 3]; 0]);
+}
+
+#[test]
+fn pictures_that_cannot_be_had_are_told_and_wrong_numbers_are_errors() {
+    let plain = || base_color(json!({"index": 0}));
+    for (images, what) in [
+        (
+            json!([{"uri": "data:image/png;base64,AAAA"}]),
+            "images[0]: is no PNG or JPEG",
+        ),
+        (json!([{"uri": "wood.png"}]), "'wood.png'"),
+        (json!([{"bufferView": 0}]), "is no PNG"),
+    ] {
+        let model = textured(plain(), &[("/images", images)]).unwrap();
+        assert!(model.pieces[0].parts[0].texture.is_none());
+        assert_eq!(codes(&model), ["missing-maps"]);
+        let message = &model.warnings[0].message;
+        assert!(message.contains(what), "{message}");
+    }
+    let data = {
+        const WORDS: &[u8; 64] =
+            b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        let encode = |c: &[u8]| {
+            let word = c.iter().fold(0_u32, |w, b| w << 8 | u32::from(*b)) << (8 * (3 - c.len()));
+            let letters = (0..=c.len()).map(|k| WORDS[(word >> (18 - 6 * k) & 63) as usize]);
+            letters.map(char::from).collect::<String>()
+        };
+        png().chunks(3).map(encode).collect::<String>()
+    };
+    let inside = json!([{"uri": format!("data:image/png;base64,{data}")}]);
+    let model = textured(plain(), &[("/images", inside)]).unwrap();
+    assert!(model.pieces[0].parts[0].texture.is_some());
+    for (pointer, value, what) in [
+        (
+            "/textures",
+            json!([]),
+            "materials[0]: 0 is none of the 0 textures",
+        ),
+        (
+            "/textures",
+            json!([{"source": 3}]),
+            "textures[0]: 3 is none of the 1 images",
+        ),
+        (
+            "/textures",
+            json!([{"source": 0, "sampler": 1}]),
+            "none of the 1 samplers",
+        ),
+        (
+            "/images",
+            json!([{}]),
+            "images[0]: uri or bufferView is missing",
+        ),
+        ("/accessors/2/type", json!("VEC3"), "'VEC3'"),
+    ] {
+        let error = textured(plain(), &[(pointer, value)])
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(what), "{error}");
+    }
+}
+
+/// The file with keys at 0, 1 and 3 seconds, whose node goes along x and turns about y.
+fn moving(changes: &[(&str, Value)]) -> Value {
+    let mut all = vec![
+        (
+            "/bufferViews/-",
+            json!({"buffer": 0, "byteOffset": 132, "byteLength": 12}),
+        ),
+        (
+            "/bufferViews/-",
+            json!({"buffer": 0, "byteOffset": 144, "byteLength": 36}),
+        ),
+        ("/buffers/0/byteLength", json!(180)),
+        (
+            "/accessors/-",
+            json!({"bufferView": 4, "componentType": 5126, "count": 3, "type": "SCALAR"}),
+        ),
+        (
+            "/accessors/-",
+            json!({"bufferView": 5, "componentType": 5126, "count": 3, "type": "VEC3"}),
+        ),
+        (
+            "/animations",
+            json!([{
+                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                "samplers": [{"input": 2, "output": 3}],
+            }]),
+        ),
+    ];
+    all.extend(changes.iter().cloned());
+    with(&all)
+}
+
+fn moving_at(changes: &[(&str, Value)], time: f64) -> Result<Model, GltfError> {
+    let mut data = buffer();
+    let keys = [0.0_f32, 1.0, 3.0];
+    let places = [[0.0_f32; 3], [2.0, 0.0, 0.0], [2.0, 8.0, 0.0]];
+    data.extend(
+        keys.iter()
+            .chain(places.as_flattened())
+            .flat_map(|v| v.to_le_bytes()),
+    );
+    parse_at(&glb(&moving(changes), &data), "t.glb", time)
+}
+
+#[test]
+fn nodes_move_with_the_first_animation() {
+    let low = |time: f64, changes: &[(&str, Value)]| {
+        let model = moving_at(changes, time).unwrap();
+        assert!(model.moves);
+        model.bounds().unwrap().0
+    };
+    assert_eq!(low(0.0, &[]), DVec3::ZERO);
+    assert_eq!(low(0.5, &[]), DVec3::X);
+    assert_eq!(low(1.5, &[]), DVec3::new(2.0, 2.0, 0.0));
+    assert_eq!(low(99.0, &[]), DVec3::new(2.0, 8.0, 0.0), "held at the end");
+    let step = [("/animations/0/samplers/0/interpolation", json!("STEP"))];
+    assert_eq!(low(0.999, &step), DVec3::ZERO);
+    // A parent takes its children with it, and what is not animated stays the node's own.
+    let child = json!([{"children": [1]}, {"mesh": 0, "translation": [0, 0, 5]}]);
+    assert_eq!(low(0.5, &[("/nodes", child)]), DVec3::new(1.0, 0.0, 5.0));
+    let scaled = [("/animations/0/channels/0/target/path", json!("scale"))];
+    assert_eq!(moving_at(&scaled, 1.5).unwrap().bounds().unwrap().1.x, 3.0);
+    let still = read(&file()).unwrap();
+    assert!(!still.moves);
+}
+
+#[test]
+fn animations_that_cannot_be_are_told() {
+    let weights = [
+        (
+            "/animations/0/channels/-",
+            json!({"sampler": 0, "target": {"node": 0, "path": "weights"}}),
+        ),
+        (
+            "/animations/0/channels/-",
+            json!({"sampler": 0, "target": {"path": "pointer"}}),
+        ),
+    ];
+    let model = moving_at(&weights, 0.5).unwrap();
+    assert_eq!(
+        (codes(&model), model.warnings[0].count),
+        (vec!["ignored-channels"], 2)
+    );
+    for (pointer, value, what) in [
+        (
+            "/animations/0/samplers/0/interpolation",
+            json!("SMOOTH"),
+            "'SMOOTH'",
+        ),
+        (
+            "/animations/0/channels/0/sampler",
+            json!(4),
+            "none of the 1 samplers",
+        ),
+        (
+            "/animations/0/channels/0/target/node",
+            json!(9),
+            "none of the 1 nodes",
+        ),
+        (
+            "/animations/0/channels/0/target/path",
+            json!("rotation"),
+            "VEC4",
+        ),
+        (
+            "/animations/0/samplers/0/interpolation",
+            json!("CUBICSPLINE"),
+            "three",
+        ),
+        ("/accessors/2/count", json!(2), "each time"),
+        (
+            "/accessors/2/bufferView",
+            json!(5),
+            "later than the one before",
+        ),
+    ] {
+        let error = moving_at(&[(pointer, value)], 0.5).unwrap_err().to_string();
+        assert!(error.contains(what), "{error}");
     }
 }

@@ -9,13 +9,14 @@ use super::motion::{self, Moved};
 use super::schema::{
     CameraTable, LightShapeTable, LightTable, MaterialTable, ObjectTable, SceneTable,
 };
-use super::{Moment, SceneFileError, environment, shapes};
+use super::{Moment, SceneFileError, environment, shapes, texture};
 use crate::world::files::SceneFolder;
 use crate::world::light::{ConvexPolygon, Light, LightShape};
 use crate::world::mesh::Shading;
 use crate::world::scene::near;
-use crate::world::scene::{Camera, Material, Object, Rest, Scene, SceneWarning};
+use crate::world::scene::{Camera, Material, MaterialPart, Object, Rest, Scene, SceneWarning};
 use crate::world::shape::{Shape, on_circle};
+use crate::world::texture::turned_round;
 
 type Built<T> = Result<T, SceneFileError>;
 
@@ -197,7 +198,7 @@ fn object(
     table: &ObjectTable,
     time: f64,
 ) -> Built<(Object, Vec<SceneWarning>)> {
-    let read = shapes::shape(source, folder, &table.mesh, time)?;
+    let mut read = shapes::shape(source, folder, &table.mesh, time)?;
     let degrees = match &table.crease {
         Some(crease) => {
             let rule = "0..=180 (degrees)";
@@ -212,6 +213,10 @@ fn object(
     let moved = motion::moved(source, table.motion.as_ref(), time)?;
     let place = Place::read(source, table, moved)?;
     let rest = table.motion.is_some().then(|| read.shape.clone());
+    let paint = texture::paint(source, folder, table, &mut read)?;
+    if place.world_from_local().determinant() < 0.0 {
+        turned_round(&mut read.coordinates);
+    }
     let mesh = read
         .shape
         .transformed(place.world_from_local())
@@ -224,6 +229,16 @@ fn object(
     object.rest = rest.and_then(|shape| place.rest(shape, Shading::Crease { degrees }));
     if table.material.is_none() {
         object.parts = read.parts;
+    }
+    if let Some(texture) = paint {
+        object.parts = vec![MaterialPart {
+            material: object.material,
+            texture: Some(texture),
+            triangles: (0..object.mesh.triangles().len() as u32).collect(),
+        }];
+    }
+    if object.parts.iter().any(|p| p.texture.is_some()) {
+        object.coordinates = Some(read.coordinates.into());
     }
     Ok((object, read.warnings))
 }
@@ -327,6 +342,10 @@ fn material(source: &Source<'_>, table: Option<&MaterialTable>) -> Built<Materia
     let Some(table) = table else {
         return Ok(material);
     };
+    if table.texture.is_some() {
+        // A picture shows its own colours.
+        material.albedo = [1.0; 3];
+    }
     if let Some(albedo) = &table.albedo {
         material.albedo = source.colour("albedo", albedo)?;
     }

@@ -89,6 +89,9 @@ fn each_snippet_of_the_document_is_a_scene() {
     let folder = Scratch::made("scene-snippets");
     std::fs::write(folder.join("bunny.obj"), TETRAHEDRON).unwrap();
     std::fs::write(folder.join("statue.glb"), glb_of_a_tetrahedron()).unwrap();
+    image::RgbImage::new(2, 2)
+        .save(folder.join("wood.png"))
+        .unwrap();
     let snippets = snippets();
     assert!(snippets.len() >= 8, "{}", snippets.len());
     for text in &snippets {
@@ -190,6 +193,11 @@ fn what_the_reader_refuses_the_schema_refuses() {
         ("mesh.box = { size = [1, 1, 1] }", "mesh.obj = 3"),
         ("mesh.box", "crease = 181\nmesh.box"),
         ("mesh.box", "casts = 1\nmesh.box"),
+        ("mesh.box", "material.texture = 1\nmesh.box"),
+        (
+            "mesh.box",
+            "material = { texture = \"a.png\", texture-repeat = 0 }\nmesh.box",
+        ),
         ("mesh.box", "open = 1\nmesh.box"),
         ("[camera]", "size = [0, 5]\n[camera]"),
     ] {

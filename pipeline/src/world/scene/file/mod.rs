@@ -74,6 +74,7 @@ mod environment;
 mod motion;
 mod schema;
 mod shapes;
+mod texture;
 
 use std::path::Path;
 

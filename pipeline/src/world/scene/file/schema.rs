@@ -164,9 +164,11 @@ pub(super) enum AmbientTable {
 }
 
 #[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct MaterialTable {
     pub(super) albedo: Option<Triple>,
+    pub(super) texture: Option<Spanned<String>>,
+    pub(super) texture_repeat: Option<Number>,
     pub(super) specular: Option<Triple>,
     pub(super) shininess: Option<Number>,
 }

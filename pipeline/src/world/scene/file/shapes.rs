@@ -1,5 +1,7 @@
 //! Meshes of a scene file: built-in primitives and models.
 
+use glam::DVec3;
+
 use super::SceneFileError;
 use super::check::Source;
 use super::schema::MeshTable;
@@ -8,6 +10,7 @@ use crate::world::model::{self, Model};
 use crate::world::obj;
 use crate::world::scene::{MaterialPart, SceneWarning};
 use crate::world::shape::{self, Shape, Terrain};
+use crate::world::texture::CornerCoordinates;
 
 /// Sides of a round primitive.
 const SEGMENTS: std::ops::RangeInclusive<u32> = 3..=4096;
@@ -17,6 +20,8 @@ const SEGMENTS: std::ops::RangeInclusive<u32> = 3..=4096;
 pub(super) struct Read {
     pub(super) shape: Shape,
     pub(super) parts: Vec<MaterialPart>,
+    /// Of each triangle its texture coordinates; empty where the mesh has none.
+    pub(super) coordinates: Vec<CornerCoordinates>,
     pub(super) warnings: Vec<SceneWarning>,
 }
 
@@ -34,18 +39,23 @@ pub(super) fn shape(
             Ok(Read {
                 shape: read.shape,
                 parts: read.parts,
+                coordinates: read.coordinates,
                 warnings: read.warnings,
             })
         }
         MeshTable::Model(path) => {
-            let read = model::load_from(&folder.join(path.get_ref()), folder)
+            let read = model::load_from(&folder.join(path.get_ref()), folder, time)
                 .map_err(|e| source.error(path.span(), e.to_string()))?;
             Ok(of_model(read, path.get_ref()))
         }
-        primitive => Ok(Read {
-            shape: self::primitive(source, primitive, time)?,
-            ..Read::default()
-        }),
+        primitive => {
+            let shape = self::primitive(source, primitive, time)?;
+            Ok(Read {
+                coordinates: coordinates(primitive, &shape),
+                shape,
+                ..Read::default()
+            })
+        }
     }
 }
 
@@ -62,12 +72,40 @@ fn of_model(mut read: Model, name: &str) -> Read {
         });
     }
     let warnings = std::mem::take(&mut read.warnings);
-    let (shape, parts) = read.merged();
+    let merged = read.merged();
     Read {
-        shape,
-        parts,
+        shape: merged.shape,
+        parts: merged.parts,
+        coordinates: merged.coordinates,
         warnings,
     }
+}
+
+/// Texture coordinates of what is made here: a picture lies on a sheet as it is seen from
+/// above with z towards the viewer, and upright on the sides of a box.
+fn coordinates(table: &MeshTable, shape: &Shape) -> Vec<CornerCoordinates> {
+    let Some((low, high)) = shape.bounds() else {
+        return Vec::new();
+    };
+    let share = |p: DVec3| (p - low) / (high - low);
+    let of = |corners: [DVec3; 3]| -> CornerCoordinates {
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        corners.map(|p| {
+            let s = share(p);
+            let (u, v) = match (table.is_sheet(), normal.abs().max_position()) {
+                (true, _) => (s.x, s.z),
+                (_, 0) => (if normal.x > 0.0 { 1.0 - s.z } else { s.z }, 1.0 - s.y),
+                (_, 1) => (s.x, if normal.y > 0.0 { s.z } else { 1.0 - s.z }),
+                _ => (if normal.z > 0.0 { s.x } else { 1.0 - s.x }, 1.0 - s.y),
+            };
+            [u as f32, v as f32]
+        })
+    };
+    let lies = table.is_sheet() || matches!(table, MeshTable::Box { .. });
+    let triangles = shape.triangles.iter().filter(|_| lies);
+    triangles
+        .map(|t| of(t.map(|i| shape.positions[i as usize])))
+        .collect()
 }
 
 fn primitive(source: &Source<'_>, table: &MeshTable, time: f64) -> Result<Shape, SceneFileError> {

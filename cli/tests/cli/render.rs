@@ -313,7 +313,10 @@ fn supersampled_pictures_are_told_apart_and_counted() {
     let doc = folder
         .gnomon("render cylinder --size 32x24 --supersample 3 --json")
         .json();
-    assert_eq!((&doc["size"], &doc["supersample"]), (&serde_json::json!([32, 24]), &3.into()));
+    assert_eq!(
+        (&doc["size"], &doc["supersample"]),
+        (&serde_json::json!([32, 24]), &3.into())
+    );
     let passes = doc["passes"].as_array().unwrap();
     assert_eq!(passes.last().unwrap()["name"], "resolve samples");
     let name = "out/cylinder-shadow-volumes-supersample-3.png";
@@ -325,7 +328,10 @@ fn supersampled_pictures_are_told_apart_and_counted() {
     let one = folder
         .gnomon("render cylinder --size 32x24 --supersample 1 --json")
         .json();
-    assert_eq!((&one["hash"], &one["totals"]), (&plain["hash"], &plain["totals"]));
+    assert_eq!(
+        (&one["hash"], &one["totals"]),
+        (&plain["hash"], &plain["totals"])
+    );
     let run = |flags: &str| folder.gnomon(&format!("render cylinder {flags}"));
     run("--supersample 9").refused(&["--supersample", "1..=8"]);
     run("--supersample 0").refused(&["--supersample"]);

@@ -42,7 +42,10 @@ fn textures_are_drawn_and_counted_and_survive_an_export() {
     folder
         .gnomon("export a.obj --size 48x36 --out-dir e")
         .fine();
-    assert_eq!(draw("e/a.toml")["hash"]["visibility"], textured["hash"]["visibility"]);
+    assert_eq!(
+        draw("e/a.toml")["hash"]["visibility"],
+        textured["hash"]["visibility"]
+    );
     assert!(read(&draw("e/a.glb")) > 0);
 }
 
@@ -60,7 +63,10 @@ fn pictures_elsewhere_are_not_opened_unless_they_may_be() {
     let refused = warnings("");
     assert_eq!(refused[0]["code"], "missing-maps");
     let message = refused[0]["message"].as_str().unwrap();
-    assert!(message.contains("../wood.png") && message.contains("--allow-outside"), "{message}");
+    assert!(
+        message.contains("../wood.png") && message.contains("--allow-outside"),
+        "{message}"
+    );
     assert_eq!(warnings("--allow-outside"), serde_json::json!([]));
 }
 
@@ -75,14 +81,23 @@ fn textures_of_scene_files_are_errors_where_they_cannot_be() {
         folder.write("s.toml", &text);
         folder.gnomon("render s.toml --size 32x24 --out a.png")
     };
-    scene("mesh.plane = { half = 2.0 }\nmaterial = { texture = \"wood.png\", texture-repeat = 3.0 }").fine();
+    scene(
+        "mesh.plane = { half = 2.0 }\nmaterial = { texture = \"wood.png\", texture-repeat = 3.0 }",
+    )
+    .fine();
     scene("mesh.model = \"a.obj\"\nopen = true\nmaterial.texture = \"wood.png\"").fine();
-    scene("mesh.box = { size = [1, 1, 1] }\nmaterial.texture = \"none.png\"")
-        .refused(&["s.toml:8:", "none.png", "cannot be read"]);
+    scene("mesh.box = { size = [1, 1, 1] }\nmaterial.texture = \"none.png\"").refused(&[
+        "s.toml:8:",
+        "none.png",
+        "cannot be read",
+    ]);
     scene("mesh.box = { size = [1, 1, 1] }\nmaterial.texture = \"a.obj\"")
         .refused(&["a.obj", "is no PNG or JPEG"]);
     scene("mesh.sphere = { subdivisions = 2, radius = 1.0 }\nmaterial.texture = \"wood.png\"")
-        .refused(&["mesh.sphere has no texture coordinates", "plane, terrain, box"]);
+        .refused(&[
+            "mesh.sphere has no texture coordinates",
+            "plane, terrain, box",
+        ]);
     scene("mesh.box = { size = [1, 1, 1] }\nmaterial.texture-repeat = 2.0")
         .refused(&["texture-repeat without texture"]);
     scene("mesh.box = { size = [1, 1, 1] }\nmaterial.texture = \"../etc/hostname\"")

@@ -145,7 +145,10 @@ impl<'a> SurfaceDraw<'a> {
         textured: &Textured,
         before: impl IntoIterator<Item = TextureBinding>,
     ) -> Draw {
-        let textures = before.into_iter().chain([textured.binding.clone()]).collect();
+        let textures = before
+            .into_iter()
+            .chain([textured.binding.clone()])
+            .collect();
         Draw {
             textures,
             ..Draw::indexed(

@@ -1,6 +1,7 @@
 //! Smaller levels of a picture: each the box-filtered mean of the one before, as the
 //! texture rules have it, of light and not of its sRGB numbers.
 
+use std::fmt;
 use std::sync::Arc;
 
 use gnomon_raster::format::{f16_from_f32, f32_from_f16};
@@ -15,6 +16,13 @@ pub struct Level {
     pub size: [u32; 2],
     /// Halves of red, green, blue and alpha, little-endian, rows from the top.
     pub packed: Arc<[u8]>,
+}
+
+impl fmt::Debug for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.size;
+        write!(f, "Level({width}x{height})")
+    }
 }
 
 impl Level {

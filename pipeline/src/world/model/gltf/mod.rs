@@ -42,7 +42,7 @@ use error::{Checked, element};
 use mesh::{Local, Reader};
 use nodes::Placed;
 use notes::Notes;
-use schema::Root;
+use schema::{About, Root};
 use texture::Pictures;
 
 /// Bytes of a file that are read at most, without buffers that are files of their own.
@@ -129,8 +129,9 @@ fn parse_with(
 fn model(bytes: &[u8], beside: Option<Beside<'_>>, time: f64) -> Checked<Model> {
     let (json, own) = container::parts(bytes).map_err(|p| p.at(""))?;
     check_json(json, MAX_JSON).map_err(|p| p.at(""))?;
+    check_asset(json)?;
     let root: Root = serde_json::from_slice(json).map_err(|e| GltfProblem::from(e).at(""))?;
-    check_asset(&root)?;
+    check_extensions(&root)?;
     let mut build = Build {
         root: &root,
         buffers: Buffers::new(&root, own, beside),
@@ -152,18 +153,20 @@ fn check_json(json: &[u8], limit: usize) -> Result<(), GltfProblem> {
     Ok(())
 }
 
-/// Version and required extensions.
-fn check_asset(root: &Root) -> Checked<()> {
-    let version = root
-        .asset
-        .min_version
-        .as_ref()
-        .unwrap_or(&root.asset.version);
-    let least = root.asset.min_version.is_some();
+/// The version, before anything that other versions write otherwise.
+fn check_asset(json: &[u8]) -> Checked<()> {
+    let about: About = serde_json::from_slice(json).map_err(|e| GltfProblem::from(e).at(""))?;
+    let asset = about.asset;
+    let version = asset.min_version.as_ref().unwrap_or(&asset.version);
+    let least = asset.min_version.is_some();
     if !(version == "2.0" || (!least && version.starts_with("2."))) {
         let version = version.clone();
         return Err(GltfProblem::Version { version }.at("asset"));
     }
+    Ok(())
+}
+
+fn check_extensions(root: &Root) -> Checked<()> {
     let unknown = |name: &&String| !SUPPORTED.contains(&name.as_str());
     match root.extensions_required.iter().find(unknown) {
         None => Ok(()),

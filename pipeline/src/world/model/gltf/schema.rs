@@ -8,7 +8,6 @@ use serde::de::IgnoredAny;
 #[serde(rename_all = "camelCase", default)]
 #[derive(Default)]
 pub(super) struct Root {
-    pub(super) asset: Asset,
     pub(super) extensions_used: Vec<String>,
     pub(super) extensions_required: Vec<String>,
     pub(super) scene: Option<usize>,
@@ -25,6 +24,13 @@ pub(super) struct Root {
     pub(super) cameras: Vec<Camera>,
     pub(super) animations: Vec<Animation>,
     pub(super) extensions: RootExtensions,
+}
+
+/// What a file says of itself.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct About {
+    pub(super) asset: Asset,
 }
 
 #[derive(Default, Deserialize)]

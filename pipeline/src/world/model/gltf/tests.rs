@@ -975,3 +975,10 @@ fn animations_that_cannot_be_are_told() {
         assert!(error.contains(what), "{error}");
     }
 }
+
+#[test]
+fn files_of_version_1_are_named_so() {
+    let first = br#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "scene": "s"}"#;
+    let error = parse(first, "t.gltf").unwrap_err().to_string();
+    assert_eq!(error, "t.gltf: asset: version is '1.0'; version 2 is read");
+}

@@ -331,7 +331,9 @@ mod tests {
     fn marks_line_ends_and_strange_statements_do_not_lose_paint() {
         let m = read("\u{feff}newmtl a\rKd\t0.5\r\nbump b.png\r\nMap_Kd c.png\nKD 1 1 1\n");
         assert_eq!(m.material(m.find("a").unwrap()).albedo, [0.5; 3]);
-        assert_eq!((m.maps.count, m.bad.count), (2, 1));
+        assert_eq!((m.maps.count, m.bad.count), (1, 1));
+        let (map, library) = m.map(m.find("a").unwrap()).unwrap();
+        assert_eq!((&map.names[0][..], &library[..]), ("c.png", "t.mtl"));
         assert!(
             m.bad.first.contains("t.mtl:5: 'KD 1 1 1'"),
             "{}",

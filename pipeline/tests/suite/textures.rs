@@ -177,6 +177,25 @@ fn what_is_far_is_averaged_light() {
     }
 }
 
+/// A level larger would show stripes of half a pixel, of which the nearest texel is black.
+#[test]
+fn the_level_is_not_larger_than_a_pixel_asks_for() {
+    let stripes: Vec<[u8; 3]> = (0..64 * 64)
+        .map(|k| {
+            if k % 64 / 4 % 2 == 0 {
+                [255; 3]
+            } else {
+                [0; 3]
+            }
+        })
+        .collect();
+    let sampler = nearest(AddressMode::Repeat);
+    let rendered = facing(sampler, picture(64, &stripes), 1.0);
+    for color in &rendered.color {
+        assert!((color[0] - 0.5).abs() < 2e-3, "{color:?}");
+    }
+}
+
 /// As many texels are read as the rules say: four a pixel at one level.
 #[test]
 fn look_ups_are_counted() {

@@ -59,7 +59,10 @@ pub(super) fn texels(bytes: &[u8]) -> Result<u64, PictureError> {
     Ok(size.map(u64::from).into_iter().product())
 }
 
-fn png_header(bytes: &[u8]) -> Result<(PngDecoder<Cursor<&[u8]>>, [u32; 2]), PictureError> {
+/// A decoder and the size of its picture.
+type Header<D> = Result<(D, [u32; 2]), PictureError>;
+
+fn png_header(bytes: &[u8]) -> Header<PngDecoder<Cursor<&[u8]>>> {
     let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(undecodable)?;
     let (width, height) = decoder.dimensions();
     let size = checked([width, height].map(u64::from))?;
@@ -80,7 +83,7 @@ fn png(bytes: &[u8]) -> Result<Level, PictureError> {
     })
 }
 
-fn jpeg_header(bytes: &[u8]) -> Result<(JpegDecoder<&[u8]>, [u32; 2]), PictureError> {
+fn jpeg_header(bytes: &[u8]) -> Header<JpegDecoder<&[u8]>> {
     let most = gnomon_raster::MAX_TEXTURE_SIZE as usize;
     let options = DecoderOptions::default()
         .set_use_unsafe(false)

@@ -10,7 +10,10 @@ impl SurfaceTexture {
     pub(crate) fn sample(&self, at: [f64; 2], gradients: [[f64; 2]; 2]) -> [f64; 3] {
         let sampler = &self.sampler;
         let size = self.picture.size().map(f64::from);
-        let squared = |d: [f64; 2]| (d[0] * size[0]).powi(2) + (d[1] * size[1]).powi(2);
+        let squared = |d: [f64; 2]| {
+            let [u, v] = [0, 1].map(|k| d[k] * size[k]);
+            u * u + v * v
+        };
         let largest = squared(gradients[0]).max(squared(gradients[1]));
         let lod = 0.5 * libm::log2(largest.max(f64::MIN_POSITIVE)) + f64::from(sampler.lod_bias);
         let lod = lod.clamp(f64::from(sampler.lod[0]), f64::from(sampler.lod[1]));

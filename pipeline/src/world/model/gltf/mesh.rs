@@ -1,6 +1,7 @@
 //! Meshes: primitives of points and indices to the triangles of one solid.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use glam::DVec3;
 
@@ -143,17 +144,17 @@ impl Reader {
         let Some(accessor) = texture::accessor(&primitive.attributes, set) else {
             return Ok(&[]);
         };
-        if !points.coordinates.contains_key(&accessor) {
-            let place = format!("{place}.attributes.TEXCOORD_{set}");
-            let left = MOST - self.vertices;
-            let read: Vec<[f64; 2]> =
-                accessor::read(root, buffers, accessor, "VEC2", left, &place)?;
-            self.vertices += read.len() as u64;
-            let finite = |v: f64| if v.is_finite() { v as f32 } else { 0.0 };
-            let own = read.into_iter().map(|at| at.map(finite)).collect();
-            points.coordinates.insert(accessor, own);
-        }
-        Ok(&points.coordinates[&accessor])
+        let slot = match points.coordinates.entry(accessor) {
+            Entry::Occupied(known) => return Ok(known.into_mut().as_slice()),
+            Entry::Vacant(slot) => slot,
+        };
+        let place = format!("{place}.attributes.TEXCOORD_{set}");
+        let left = MOST - self.vertices;
+        let read: Vec<[f64; 2]> = accessor::read(root, buffers, accessor, "VEC2", left, &place)?;
+        self.vertices += read.len() as u64;
+        let finite = |v: f64| if v.is_finite() { v as f32 } else { 0.0 };
+        let own: Vec<[f32; 2]> = read.into_iter().map(|at| at.map(finite)).collect();
+        Ok(slot.insert(own).as_slice())
     }
 
     fn indices(

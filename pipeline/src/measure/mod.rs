@@ -7,4 +7,5 @@ pub mod render;
 pub mod stress;
 pub mod tile_traffic;
 pub mod visibility_sum;
+pub mod watch;
 pub mod wedge_work;

@@ -8,6 +8,7 @@ use gnomon_raster::{Gpu, GpuConfig, SubmitReport, Subresource, memory};
 use gnomon_shaders::line_samples::NEGATIVE_DEPTH;
 use thiserror::Error;
 
+use super::watch;
 use crate::technique::{
     CasterUse, Figure, Frame, KeptPictures, Params, PictureToKeep, Roles, Technique,
     TechniqueError, VisibilityOutput, Warning,
@@ -215,7 +216,7 @@ struct Times {
 impl Times {
     fn measure(gpu: &mut Gpu, frame: &Frame, repeat: u32) -> Result<Self, RenderError> {
         if repeat > 1 {
-            gpu.submit(&frame.recording.list)?;
+            watch::submit(gpu, &frame.recording.list)?;
         }
         let mut times = Self {
             report: SubmitReport::default(),
@@ -225,7 +226,10 @@ impl Times {
         };
         for _ in 0..repeat.max(1) {
             let start = Instant::now();
-            let report = gpu.submit(&frame.recording.list)?;
+            let report = match repeat > 1 {
+                true => gpu.submit(&frame.recording.list)?,
+                false => watch::submit(gpu, &frame.recording.list)?,
+            };
             times.frames.push(start.elapsed().as_secs_f64() * 1e3);
             for (all, pass) in times.passes.iter_mut().zip(&report.passes) {
                 all.push(pass.time.as_secs_f64() * 1e3);

@@ -61,7 +61,8 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         let params = args.frame.params_of(&params, frame);
         let job = RenderJob::of(args, technique, params, scene, Some(out))?;
         let ahead = (args.frame).prepare(technique, &job.params, &job.scene, &progress)?;
-        let mut done = render_next(&job.scene, technique, &job.params, &job.settings, &mut kept)?;
+        let draw = || render_next(&job.scene, technique, &job.params, &job.settings, &mut kept);
+        let mut done = progress.of_step(&format!("frame {frame}"), draw)?;
         done.warnings.extend(ahead);
         progress.step();
         let files = write(&job, args, &done, &progress)?;

@@ -27,7 +27,8 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     progress.step();
     progress.doing("rendering");
     let ahead = (args.frame).prepare(job.technique, &job.params, &job.scene, &progress)?;
-    let mut done = render(&job.scene, job.technique, &job.params, &job.settings)?;
+    let draw = || render(&job.scene, job.technique, &job.params, &job.settings);
+    let mut done = progress.of_frame("rendering", draw)?;
     done.warnings.extend(ahead);
     progress.step();
     let files = write(&job, args, &done, &progress)?;

@@ -27,5 +27,6 @@ mod traces;
 mod traffic;
 mod tune;
 mod verbs;
+mod view;
 mod walk_through;
 mod wild;

@@ -2,6 +2,7 @@
 //! is linked once.
 
 mod against;
+mod as_done;
 mod attack;
 mod bad_input;
 mod bench;

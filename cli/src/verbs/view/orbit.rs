@@ -6,6 +6,9 @@ use glam::DVec3;
 pub(super) const STEP: f64 = 5.0;
 /// What a step of the zoom leaves of the distance.
 const CLOSER: f64 = 0.9;
+/// How close the eye comes, as a share of the target's distance from the origin: closer, there
+/// are too few digits for a direction.
+const NEAREST: f64 = 1e-9;
 /// How near to straight above or below the eye goes, in degrees from the horizon.
 const STEEPEST: f64 = 89.0;
 
@@ -58,10 +61,11 @@ impl Pose {
         let factor = if steps > 0 { CLOSER } else { 1.0 / CLOSER };
         let scale = (0..steps.unsigned_abs()).fold(1.0, |all, _| all * factor);
         let eye = self.target + (self.eye - self.target) * scale;
-        let nowhere = !eye.is_finite() || (eye - self.target).length() == 0.0;
-        match nowhere {
-            true => *self,
-            false => Self { eye, ..*self },
+        let distance = (eye - self.target).length();
+        let can_look = distance > NEAREST * self.target.length() && distance.is_finite();
+        match can_look {
+            true => Self { eye, ..*self },
+            false => *self,
         }
     }
 }

@@ -22,6 +22,10 @@ use crate::output;
 
 /// Between looks at keys and frames.
 const TICK: Duration = Duration::from_millis(20);
+/// Between words about a frame that is being drawn.
+const WAITING: Duration = Duration::from_millis(100);
+/// How long the panic of another thread may take to be told.
+const GRACE: Duration = Duration::from_secs(2);
 /// Without a key for so long, the whole frame is drawn.
 const REST: Duration = Duration::from_millis(150);
 
@@ -43,6 +47,7 @@ pub(crate) fn run(args: &ViewerArgs, registry: &Registry) -> Result<(), CliError
         palette: Palette::of_terminal(),
         input: Instant::now(),
         asked: Instant::now(),
+        seen: Instant::now(),
         is_over: false,
     };
     let ended = viewer.show(&mut session);
@@ -55,7 +60,7 @@ pub(crate) fn run(args: &ViewerArgs, registry: &Registry) -> Result<(), CliError
     match viewer.is_over {
         true => Ok(()),
         false => {
-            viewer.worker.join();
+            viewer.worker.wait(GRACE);
             Err(CliError::Check(
                 "the thread that draws has ended".to_owned(),
             ))
@@ -93,6 +98,8 @@ struct Viewer {
     input: Instant,
     /// When a frame was asked for last.
     asked: Instant,
+    /// When the screen was drawn last.
+    seen: Instant,
     is_over: bool,
 }
 
@@ -108,14 +115,17 @@ impl Viewer {
             let Ok(()) = self.finished(&mut events) else {
                 return Ok(());
             };
+            let mut is_new = !events.is_empty();
             if events.is_empty() && self.input.elapsed() >= REST {
                 events.push(Event::Rest);
             }
             for event in events {
                 let effects = self.state.update(event);
+                is_new |= !effects.is_empty();
                 self.do_all(effects);
             }
-            if Session::is_on() {
+            is_new |= self.state.asked.is_some() && self.seen.elapsed() >= WAITING;
+            if is_new && Session::is_on() {
                 self.draw(session)?;
             }
         }
@@ -165,6 +175,7 @@ impl Viewer {
     }
 
     fn draw(&mut self, session: &mut Session) -> Result<(), CliError> {
+        self.seen = Instant::now();
         let terminal = &mut session.terminal;
         let size = terminal.size().map_err(CliError::Terminal)?;
         let cells = [size.width, size.height];

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use super::event::Event;
 use super::look::Look;
@@ -55,10 +56,12 @@ impl Worker {
         }
     }
 
-    /// Waits for the end of a thread that is no more.
-    pub(super) fn join(self) {
-        // Its panic has been told.
-        let _ = self.thread.join();
+    /// Waits for the end of a thread that panicked, which tells of it; not for long.
+    pub(super) fn wait(&self, most: Duration) {
+        let start = Instant::now();
+        while !self.thread.is_finished() && start.elapsed() < most {
+            std::thread::sleep(most / 100);
+        }
     }
 }
 

@@ -104,7 +104,7 @@ fn lights_shine_alone_one_after_the_other() {
     );
     hashes.dedup();
     assert_eq!(hashes.len(), 3);
-    let mut single = Bench::started(SCENE, [20, 12]);
+    let mut single = Bench::started(SCENE, [50, 12]);
     assert_eq!(single.ask(Action::Light), []);
     assert!(single.text().concat().contains("no other light"));
 }
@@ -143,14 +143,14 @@ fn overlays_follow_one_another_where_there_are_any() {
 
 #[test]
 fn drafts_stand_for_frames_that_take_long_until_nobody_moves() {
-    let mut bench = Bench::started(SCENE, [20, 12]);
+    let mut bench = Bench::started(SCENE, [60, 12]);
     bench.state.shown.as_mut().unwrap().ms = 100.0;
     let effects = bench.ask(step(1, 0));
-    assert_eq!(wanted(&effects).size, [10, 10]);
+    assert_eq!(wanted(&effects).size, [30, 10]);
     bench.answer(effects);
     assert!(!bench.state.is_settled());
     assert!(
-        bench.text()[10].contains("10x10 draft"),
+        bench.text()[10].contains("30x10 draft"),
         "{:?}",
         bench.text()[10]
     );
@@ -161,7 +161,7 @@ fn drafts_stand_for_frames_that_take_long_until_nobody_moves() {
     assert_eq!(bench.state.update(Event::Rest), []);
     // Quick frames are drawn whole at once.
     bench.state.shown.as_mut().unwrap().ms = 1.0;
-    assert_eq!(wanted(&bench.ask(step(1, 0))).size, [20, 20]);
+    assert_eq!(wanted(&bench.ask(step(1, 0))).size, [60, 20]);
 }
 
 #[test]

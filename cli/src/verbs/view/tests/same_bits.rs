@@ -10,7 +10,7 @@ use gnomon_raster::{Format, GpuConfig, format};
 use gnomon_traces::history::{self, HistoryOptions, Value};
 
 use super::{Bench, step};
-use crate::verbs::view::event::Action;
+use crate::verbs::view::event::{Action, Event};
 use crate::verbs::view::panel;
 use crate::verbs::view::save::save;
 
@@ -80,6 +80,8 @@ fn the_line_that_is_printed_makes_the_same_file() {
         for action in actions {
             bench.press(action);
         }
+        let rest = bench.state.update(Event::Rest);
+        bench.answer(rest);
         assert!(bench.state.is_settled(), "{name}: {:?}", bench.state.notice);
         let [ours, theirs] = written(&bench, name);
         assert!(ours == theirs, "{name}");

@@ -14,8 +14,7 @@ use crate::flags::FrameArgs;
 t T technique; L light; o O overlay; p or Tab a pixel and what it holds, Enter its\n\
 history; s write the picture and print the `gnomon render` that makes it; 0 the\n\
 scene's own eye; ? help; q quit. Pictures are of half blocks, as large as the\n\
-terminal without --size, in 24-bit color where COLORTERM is truecolor, or else 256.\n\
-Example: gnomon view demo --technique soft-shadow-volumes"
+terminal without --size, in 24-bit color where COLORTERM is truecolor, or else 256."
 )]
 pub(crate) struct ViewerArgs {
     /// What to draw.

@@ -30,6 +30,7 @@ use crate::verbs::techniques::TechniquesArgs;
 use crate::verbs::traffic::TrafficArgs;
 use crate::verbs::trim::TrimArgs;
 use crate::verbs::tune::TuneArgs;
+use crate::verbs::view::ViewerArgs;
 use crate::verbs::wedge::WedgeArgs;
 
 /// A deterministic software GPU for shadow algorithms that counts memory traffic.
@@ -52,6 +53,8 @@ pub(crate) enum Verb {
     Demo(DemoArgs),
     /// Render one frame of a scene
     Render(Box<RenderArgs>),
+    /// Go round a scene on the terminal, switch techniques and look into pixels
+    View(Box<ViewerArgs>),
     /// Measure techniques against the exact soft shadow
     Compare(Box<CompareArgs>),
     /// Measure error, time and bytes over scenes, techniques and their parameters
@@ -130,6 +133,7 @@ impl Verb {
             Self::Techniques(args) => verbs::techniques::run(args, registry),
             Self::Tune(args) => verbs::tune::run(args, registry),
             Self::Traffic(args) => verbs::traffic::run(args),
+            Self::View(args) => verbs::view::run(args, registry),
             Self::Completions(args) => verbs::completions::run(args),
             Self::Man(args) => verbs::man::run(args),
         }

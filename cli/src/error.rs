@@ -99,6 +99,15 @@ pub(crate) enum CliError {
     /// Standard output cannot be written, other than by a closed pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(std::io::Error),
+    /// There is no terminal to draw on.
+    #[error(
+        "`view` draws on a terminal, and stdout is none; `gnomon render` takes the same flags \
+         and writes the picture to a file"
+    )]
+    NoTerminal,
+    /// The terminal cannot be used.
+    #[error("the terminal cannot be used: {0}")]
+    Terminal(std::io::Error),
     /// Something of a suite of measurements is wrong, at a flag or a line.
     #[error("{place}: {problem}")]
     Suite {

@@ -5,7 +5,7 @@ use clap::{Command, CommandFactory};
 use crate::command_line::Cli;
 
 /// Examples of verbs, for those that bring none of their own.
-const EXAMPLES: [(&str, &str); 19] = [
+const EXAMPLES: [(&str, &str); 20] = [
     ("demo", "gnomon demo -o out"),
     (
         "render",
@@ -37,6 +37,7 @@ const EXAMPLES: [(&str, &str); 19] = [
     ("scenes", "gnomon scenes --json"),
     ("techniques", "gnomon techniques pcss"),
     ("tune", "gnomon tune creature --max-error 0.02"),
+    ("view", "gnomon view demo --technique soft-shadow-volumes"),
 ];
 
 const EXIT_CODES: &str = "Exit codes: 0 fine, 1 differs or check failed, 2 bad input.";

@@ -65,7 +65,9 @@ const RASTER_NEEDS: &[&str] = &["bytemuck", "fearless_simd", "half", "rayon", "t
 const REPORTING: &[&str] = &[
     "clap",
     "comfy-table",
+    "crossterm",
     "indicatif",
+    "ratatui-core",
     "serde_json",
     "tiny-skia",
 ];

@@ -118,4 +118,27 @@ impl EnvArgs {
             },
         })
     }
+
+    /// The flags as they were given.
+    pub(crate) fn words(&self) -> Vec<String> {
+        let given = [
+            ("env", self.env.clone()),
+            ("env-form", self.env_form.map(name)),
+            ("env-threshold", self.env_threshold.map(|v| v.to_string())),
+            ("env-residual", self.env_residual.map(name)),
+            ("env-place", self.env_place.map(name)),
+            ("env-ambient", self.env_ambient.map(name)),
+            ("env-side", self.env_side.map(|v| v.to_string())),
+            ("env-turn", self.env_turn.map(|v| v.to_string())),
+            ("env-brightness", self.env_brightness.map(|v| v.to_string())),
+        ];
+        let word = |(flag, value): (&str, Option<String>)| Some(format!("--{flag}={}", value?));
+        given.into_iter().filter_map(word).collect()
+    }
+}
+
+/// A value as the command line has it.
+fn name(value: impl ValueEnum) -> String {
+    let name = value.to_possible_value();
+    name.map_or(String::new(), |v| v.get_name().to_owned())
 }

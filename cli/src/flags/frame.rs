@@ -99,6 +99,18 @@ impl FrameArgs {
         }
     }
 
+    /// Everything that makes the picture, as arguments of `render`, but for technique,
+    /// settings, size, eye and target.
+    pub(crate) fn words_of_scene(&self) -> Vec<String> {
+        let mut words = self.scene.words();
+        words.extend((self.time != 0.0).then(|| format!("--time={}", self.time)));
+        words.extend(self.environment.words());
+        words.extend(self.lights.map(|n| format!("--lights={n}")));
+        words.extend(self.view.words_without_eye());
+        words.extend(self.gpu.no_skip.then(|| "--no-skip".to_owned()));
+        words
+    }
+
     /// The parameters of `technique` that were given.
     pub(crate) fn params(&self, technique: &dyn Technique) -> Result<Params, TechniqueError> {
         let given = self.technique.settings.iter().chain(&self.settings);

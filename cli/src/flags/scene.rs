@@ -24,4 +24,10 @@ impl SceneArgs {
         };
         SceneSource::open_with(&self.scene, outside)
     }
+
+    /// The arguments as they were given.
+    pub(crate) fn words(&self) -> Vec<String> {
+        let outside = self.allow_outside.then(|| "--allow-outside".to_owned());
+        std::iter::once(self.scene.clone()).chain(outside).collect()
+    }
 }

@@ -22,8 +22,15 @@ pub(crate) struct ViewArgs {
     /// A light instead of the scene's; may be repeated: point:X,Y,Z, square:X,Y,Z,SIDE
     /// (horizontal), sphere:X,Y,Z,RADIUS, disc:X,Y,Z,NX,NY,NZ,RADIUS (its normal before its
     /// radius) or directional:X,Y,Z (towards it). :R,G,B behind it is its color
-    #[arg(long = "light", value_name = "KIND:PLACE", value_parser = parse_light, conflicts_with = "env")]
-    light: Vec<Light>,
+    #[arg(long = "light", value_name = "KIND:PLACE", value_parser = parse_written_light, conflicts_with = "env")]
+    light: Vec<LightArg>,
+}
+
+/// A light, and how it was written.
+#[derive(Clone, Debug)]
+struct LightArg {
+    text: String,
+    light: Light,
 }
 
 impl ViewArgs {
@@ -33,8 +40,15 @@ impl ViewArgs {
             eye: self.eye,
             target: self.target,
             fov_y_degrees: self.fov,
-            lights: self.light.clone(),
+            lights: self.light.iter().map(|l| l.light.clone()).collect(),
         }
+    }
+
+    /// The flags as they were given, but for those of the eye and its target.
+    pub(crate) fn words_without_eye(&self) -> Vec<String> {
+        let fov = self.fov.map(|fov| format!("--fov={fov}"));
+        let lights = self.light.iter().map(|l| format!("--light={}", l.text));
+        fov.into_iter().chain(lights).collect()
     }
 }
 
@@ -56,6 +70,13 @@ fn parse_point(text: &str) -> Result<DVec3, String> {
 const LIGHT: &str = "expected point:X,Y,Z, square:X,Y,Z,SIDE, sphere:X,Y,Z,RADIUS, \
     disc:X,Y,Z,NX,NY,NZ,RADIUS or directional:X,Y,Z, sizes above 0, directions with a length, \
     and perhaps :R,G,B of 0 or more";
+
+fn parse_written_light(text: &str) -> Result<LightArg, String> {
+    Ok(LightArg {
+        text: text.to_owned(),
+        light: parse_light(text)?,
+    })
+}
 
 fn parse_light(text: &str) -> Result<Light, String> {
     light(text).ok_or_else(|| LIGHT.to_owned())

@@ -6,6 +6,7 @@ mod env_lights;
 mod kind;
 mod overdraw;
 mod overlap;
+mod recorded;
 mod saturation;
 mod sides;
 mod silhouette;
@@ -23,6 +24,7 @@ use gnomon_pipeline::world::scene::Scene;
 
 use crate::draw::Picture;
 pub(crate) use kind::OverlayKind;
+pub(crate) use recorded::{Explained, Recorded};
 pub(crate) use sums::each_pixel;
 
 /// What overlays are drawn from.
@@ -56,7 +58,7 @@ pub(crate) fn picture(done: &Rendered) -> Picture {
 }
 
 /// Whether an overlay needs accesses to be recorded.
-pub(crate) fn needs_heat(kind: OverlayKind) -> bool {
+fn needs_heat(kind: OverlayKind) -> bool {
     matches!(kind, OverlayKind::Overdraw | OverlayKind::Traffic)
 }
 

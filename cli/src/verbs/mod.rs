@@ -25,6 +25,7 @@ pub(crate) mod techniques;
 pub(crate) mod traffic;
 pub(crate) mod trim;
 pub(crate) mod tune;
+pub(crate) mod view;
 pub(crate) mod wedge;
 
 /// A scene's name with nothing in it that could leave a folder.

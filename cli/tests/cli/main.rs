@@ -2,6 +2,7 @@
 //! is linked once.
 
 mod against;
+mod as_done;
 mod attack;
 mod bad_input;
 mod bench;
@@ -28,5 +29,6 @@ mod traces;
 mod traffic;
 mod tune;
 mod verbs;
+mod view;
 mod walk_through;
 mod wild;

@@ -8,4 +8,5 @@ pub mod stress;
 mod supersample;
 pub mod tile_traffic;
 pub mod visibility_sum;
+pub mod watch;
 pub mod wedge_work;

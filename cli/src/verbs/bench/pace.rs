@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::output::is_quiet;
+
 /// How far a benchmark is.
 pub(crate) struct Pace {
     bar: Option<ProgressBar>,
@@ -18,7 +20,7 @@ impl Pace {
     /// The start of `total` measurements.
     pub(crate) fn new(total: usize) -> Self {
         Self {
-            bar: stderr().is_terminal().then(|| bar(total)),
+            bar: (stderr().is_terminal() && !is_quiet()).then(|| bar(total)),
             total,
             done: 0,
             start: Instant::now(),
@@ -38,6 +40,7 @@ impl Pace {
         self.done += 1;
         match &self.bar {
             Some(bar) => bar.inc(1),
+            None if is_quiet() => {}
             None => {
                 let [done, total] = [self.done, self.total];
                 self.say(&format!("[{done}/{total}] {}{what}", self.left()));

@@ -31,8 +31,13 @@ pub(super) struct Measured {
     pub(super) score: Score,
 }
 
-/// Asks the oracle, then renders and measures each entry in turn.
-pub(super) fn run(job: &CompareJob, progress: &Progress) -> Result<Comparison, CliError> {
+/// Asks the oracle, then renders and measures each entry in turn; `grown` is told of the
+/// comparison so far after each but the last.
+pub(super) fn run(
+    job: &CompareJob,
+    progress: &Progress,
+    grown: &mut dyn FnMut(&Comparison) -> Result<(), CliError>,
+) -> Result<Comparison, CliError> {
     progress.doing("computing the truth");
     let start = Instant::now();
     let reference = Reference::with_light_image(
@@ -57,6 +62,9 @@ pub(super) fn run(job: &CompareJob, progress: &Progress) -> Result<Comparison, C
         progress.doing(&entry.label);
         found.measure(job, entry, progress)?;
         progress.step();
+        if found.measured.len() < job.entries.len() {
+            grown(&found)?;
+        }
     }
     Ok(found)
 }
@@ -70,7 +78,8 @@ impl Comparison {
     ) -> Result<(), CliError> {
         let (technique, params) = (entry.technique, &entry.params);
         let ahead = prepare(technique, params, &job.scene, &job.cache, progress)?;
-        let mut done = render(&job.scene, technique, params, &job.settings)?;
+        let draw = || render(&job.scene, technique, params, &job.settings);
+        let mut done = progress.of_step(&entry.label, draw)?;
         done.warnings.extend(ahead);
         let under = self.reference.under(&done.depth)?;
         let truth = self.picture_of_truth(job, entry, &under)?;

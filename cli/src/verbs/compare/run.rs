@@ -10,6 +10,7 @@ use super::{against, csv, environment, picture, table};
 use crate::error::CliError;
 use crate::output::files::Batch;
 use crate::output::json::{FileDocument, worker_threads};
+use crate::output::pause::Pause;
 use crate::output::png_text::{About, software, with_text};
 use crate::output::progress::Progress;
 use crate::output::{self, numbers, png};
@@ -24,11 +25,12 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     }
     let job = CompareJob::new(args, registry)?;
     let progress = Progress::new(job.steps());
-    let found = measure::run(&job, &progress)?;
+    let mut pause = Pause::default();
+    let mut grown = |found: &Comparison| pause.unless_too_soon(|| write_picture(&job, found));
+    let found = measure::run(&job, &progress, &mut grown)?;
     progress.doing("writing the picture");
+    write_picture(&job, &found)?;
     let mut batch = Batch::default();
-    let picture = png::encode(&picture::draw(&job, &found));
-    batch.stage(&job.out, &with_text(&picture, &about(&job)))?;
     let mut files = vec![FileDocument {
         kind: "comparison",
         path: job.out.display().to_string(),
@@ -57,9 +59,17 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     output::print_summary(&summarise(&job, &found, &files), is_taken)
 }
 
+/// Draws what has been compared, in place of an earlier picture.
+fn write_picture(job: &CompareJob, found: &Comparison) -> Result<(), CliError> {
+    let mut batch = Batch::default();
+    let picture = png::encode(&picture::draw(job, found));
+    batch.stage(&job.out, &with_text(&picture, &about(job, found)))?;
+    batch.commit()
+}
+
 /// What the picture says of itself.
-fn about(job: &CompareJob) -> About {
-    let labels: Vec<&str> = job.entries.iter().map(|e| e.label.as_str()).collect();
+fn about(job: &CompareJob, found: &Comparison) -> About {
+    let labels: Vec<&str> = found.measured.iter().map(|m| m.label.as_str()).collect();
     vec![
         software(),
         ("Scene", job.scene.name.clone()),

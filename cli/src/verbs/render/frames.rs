@@ -63,7 +63,8 @@ pub(super) fn run(args: &RenderArgs, registry: &Registry, count: u32) -> Result<
         let ahead = (args.frame).prepare(technique, &job.params, &job.scene, &progress)?;
         let settings = (&job.settings, job.samples);
         let (scene, params) = (&job.scene, &job.params);
-        let mut done = render_next_supersampled(scene, technique, params, settings, &mut kept)?;
+        let draw = || render_next_supersampled(scene, technique, params, settings, &mut kept);
+        let mut done = progress.of_step(&format!("frame {frame}"), draw)?;
         done.warnings.extend(ahead);
         progress.step();
         let files = write(&job, args, &done, &progress)?;

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use gnomon_pipeline::measure::carries::{self, Carries};
-use gnomon_pipeline::measure::heat::{self, Heat};
 use gnomon_pipeline::measure::render::{RenderSettings, Rendered};
-use gnomon_pipeline::technique::{Params, SceneWedges, Technique};
+use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::MAX_TEXTURE_SIZE;
@@ -14,7 +12,7 @@ use super::args::{Per, RenderArgs};
 use crate::error::CliError;
 use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
 use crate::output::{files, is_stdout};
-use crate::overlay::{self, OverlayKind};
+use crate::overlay::{Explained, OverlayKind};
 use crate::verbs;
 
 /// Everything the command line asked for, checked.
@@ -90,47 +88,26 @@ impl RenderJob {
         }
     }
 
-    pub(super) fn wedges(&self) -> Result<Option<SceneWedges>, CliError> {
-        if !self.overlays.iter().any(|(k, _)| *k == OverlayKind::Wedges) {
-            return Ok(None);
-        }
-        Ok(self.technique.wedges(&self.scene, &self.params)?)
-    }
-
-    /// What wedges add up to, or what would have to be set to keep carries at all.
-    pub(super) fn carries(&self) -> Result<Option<Carries>, CliError> {
-        let wanted = (self.overlays.iter()).any(|(k, _)| *k == OverlayKind::Carries);
-        if !wanted {
-            return Ok(None);
-        }
-        let (scene, technique, params) = (&self.scene, self.technique, &self.params);
-        let found = carries::record(scene, technique, params, &self.settings)?;
-        found.map(Some).ok_or_else(|| CliError::Flag {
-            flag: "--overlay",
-            value: OverlayKind::Carries.name().to_owned(),
-            valid: format!(
-                "{}, as it is set, adds no coverage up in 8-bit channels; \
-                 soft-shadow-volumes-optimised does, and soft-shadow-volumes with \
-                 --set buffer=rgba8 or rgba8x2",
-                technique.name()
-            ),
-        })
-    }
-
-    pub(super) fn heat(&self) -> Result<Option<Heat>, CliError> {
-        if !self
+    /// Refuses carries of a frame that keeps none.
+    pub(super) fn check_carries(&self) -> Result<(), CliError> {
+        let wanted = self
             .overlays
             .iter()
-            .any(|(kind, _)| overlay::needs_heat(*kind))
-        {
-            return Ok(None);
+            .any(|(k, _)| *k == OverlayKind::Carries);
+        match wanted {
+            true => self.explained().check_carries(),
+            false => Ok(()),
         }
-        Ok(Some(heat::record(
-            &self.scene,
-            self.technique,
-            &self.params,
-            &self.settings,
-        )?))
+    }
+
+    /// The frame, for overlays.
+    pub(super) fn explained(&self) -> Explained<'_> {
+        Explained {
+            scene: &self.scene,
+            technique: self.technique,
+            params: &self.params,
+            settings: &self.settings,
+        }
     }
 }
 

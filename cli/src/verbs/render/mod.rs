@@ -10,3 +10,4 @@ mod write;
 
 pub(crate) use args::RenderArgs;
 pub(crate) use run::run;
+pub(crate) use write::png_of;

@@ -28,7 +28,8 @@ pub(crate) fn run(args: &RenderArgs, registry: &Registry) -> Result<(), CliError
     progress.doing("rendering");
     let ahead = (args.frame).prepare(job.technique, &job.params, &job.scene, &progress)?;
     let (scene, technique, params) = (&job.scene, job.technique, &job.params);
-    let mut done = render_supersampled(scene, technique, params, &job.settings, job.samples)?;
+    let draw = || render_supersampled(scene, technique, params, &job.settings, job.samples);
+    let mut done = progress.of_frame("rendering", draw)?;
     done.warnings.extend(ahead);
     progress.step();
     let files = write(&job, args, &done, &progress)?;

@@ -94,6 +94,17 @@ impl SceneSource {
         self
     }
 
+    /// `scene`, as this source made it without a view, looked at from `view`: what the source
+    /// makes with that view, without reading anything again.
+    ///
+    /// # Errors
+    /// The view is none: see [`ViewError`](super::ViewError).
+    pub fn seen(&self, scene: &Scene, view: &View) -> Result<Scene, SceneError> {
+        let mut seen = scene.clone();
+        view.apply(&mut seen, matches!(self.kind, Kind::Model(_)))?;
+        Ok(seen)
+    }
+
     /// The scene at `time`, in seconds.
     ///
     /// # Errors
@@ -140,6 +151,28 @@ mod tests {
         assert!(SceneSource::open("walk").unwrap().at(1.5).unwrap() == late);
         let mut still = SceneSource::open("cylinder").unwrap();
         assert!(still.at(0.0).unwrap() == still.at(9.0).unwrap());
+    }
+
+    #[test]
+    fn scenes_are_looked_at_again_without_being_read_again() {
+        let view = View {
+            eye: Some(glam::DVec3::new(2.0, 1.5, 6.0)),
+            ..View::default()
+        };
+        let folder = crate::world::scratch::Scratch::made("seen-again");
+        let model = folder.join("tent.obj");
+        std::fs::write(
+            &model,
+            "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n",
+        )
+        .unwrap();
+        for name in ["walk", model.to_str().unwrap()] {
+            let mut source = SceneSource::open(name).unwrap();
+            let plain = source.at(0.5).unwrap();
+            let seen = source.seen(&plain, &view).unwrap();
+            let made = source.clone().with_view(view.clone()).at(0.5).unwrap();
+            assert!(seen == made && seen != plain, "{name}");
+        }
     }
 
     #[test]

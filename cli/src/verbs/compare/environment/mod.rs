@@ -63,8 +63,8 @@ pub(super) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     let mut measured = Vec::new();
     for scene in &job.scenes {
         for entry in &job.entries {
-            progress.doing(&entry.label);
-            measured.push(job.measure(scene, entry, &references)?);
+            let draw = || job.measure(scene, entry, &references);
+            measured.push(progress.of_step(&entry.label, draw)?);
             progress.step();
         }
     }

@@ -14,7 +14,20 @@ use find::Found;
 pub(crate) use request::ShowRequest;
 use request::{Kind, refuse};
 
-/// The file that `request` asks for, of a frame that is drawn afresh.
+/// Whether `request` asks for something that the frame has, and the file can hold.
+pub(super) fn check_show(recording: &Recording, request: &ShowRequest) -> Result<(), CliError> {
+    let found = Found::new(recording, request)?;
+    let format = recording.textures()[found.texture].descriptor().format;
+    match request.kind() {
+        Kind::Exr if !textures::fits_floats(format) => {
+            let valid = format!("{format:?} has integers that no float holds: use .npy");
+            Err(refuse(request, valid))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The file that `request` asks for, which has been checked, of a frame that is drawn afresh.
 pub(super) fn show(
     recording: &Recording,
     request: &ShowRequest,
@@ -30,14 +43,7 @@ pub(super) fn show(
             let array = textures::array(texture, image, found.aspect)?;
             npy::encode_texels(array.size, array.kind, array.channels, &array.bytes)
         }
-        Kind::Exr => {
-            let format = texture.descriptor().format;
-            if !textures::fits_floats(format) {
-                let valid = format!("{format:?} has integers that no float holds: use .npy");
-                return Err(refuse(request, valid));
-            }
-            textures::exr(&textures::values(texture, image, found.aspect)?)
-        }
+        Kind::Exr => textures::exr(&textures::values(texture, image, found.aspect)?),
         Kind::Png => {
             let values = textures::values(texture, image, found.aspect)?;
             png::check_room(values.size)?;

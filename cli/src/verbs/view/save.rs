@@ -1,0 +1,45 @@
+//! Writes the picture that is shown, as `render` would.
+
+use std::path::{Path, PathBuf};
+
+use super::event::Saved;
+use super::studio::{Drawn, Studio};
+use crate::draw::Picture;
+use crate::error::CliError;
+use crate::output::files::Batch;
+use crate::overlay;
+use crate::verbs::file_stem;
+use crate::verbs::render::png_of;
+
+/// Writes the frame, and what explains it, into `folder` under names that nothing has yet.
+pub(super) fn save(studio: &Studio, drawn: &Drawn, folder: &Path) -> Result<Saved, CliError> {
+    let path = new_name(folder, drawn);
+    let written =
+        |picture: &Picture| png_of(picture, &drawn.scene, &drawn.params, (&drawn.done, 1));
+    let mut batch = Batch::default();
+    batch.stage(&path, &written(&overlay::picture(&drawn.done)))?;
+    if let (Some(kind), Some(picture)) = (drawn.look.overlay, &drawn.overlay) {
+        batch.stage(&beside(&path, kind.name()), &written(picture))?;
+    }
+    batch.commit()?;
+    Ok(Saved {
+        command: studio.command(&drawn.look, &path),
+        path,
+    })
+}
+
+/// `SCENE-TECHNIQUE-view-N.png`, with the first number that is free.
+fn new_name(folder: &Path, drawn: &Drawn) -> PathBuf {
+    let scene = file_stem(&drawn.scene.name);
+    let name = |n: u32| format!("{scene}-{}-view-{n}.png", drawn.params.technique());
+    let paths = (1..).map(|n| folder.join(name(n)));
+    let mut free = paths.filter(|path| !path.exists());
+    free.next().unwrap_or_else(|| folder.join(name(0)))
+}
+
+/// Where `render` writes an overlay.
+fn beside(path: &Path, overlay: &str) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{overlay}.png"));
+    path.with_file_name(name)
+}

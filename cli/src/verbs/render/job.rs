@@ -10,8 +10,8 @@ use gnomon_pipeline::techniques::Registry;
 use gnomon_pipeline::world::scene::Scene;
 
 use super::args::{Per, RenderArgs};
+use crate::documents::{FileDocument, RenderDocument, RenderInputs};
 use crate::error::CliError;
-use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
 use crate::output::{files, is_stdout};
 use crate::overlay::{self, OverlayKind};
 use crate::verbs;

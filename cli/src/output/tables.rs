@@ -4,7 +4,7 @@ use comfy_table::{
     CellAlignment, ContentArrangement, Table as TerminalTable, TableComponent, presets,
 };
 use gnomon_pipeline::measure::render::Rendered;
-use gnomon_raster::{ClientTraffic, Counters, SubmitReport, Traffic};
+use gnomon_raster::{ClientTraffic, Counters, Traffic};
 
 use super::numbers::{count, milliseconds, rough_count};
 use super::wrap::WIDTH;

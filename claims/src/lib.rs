@@ -28,6 +28,7 @@ mod lab;
 mod lines;
 mod overlaps;
 mod paper1;
+mod paper1_buffer;
 mod paper1_sizes;
 mod paper2;
 mod paper2_ending;
@@ -149,9 +150,10 @@ impl Claim {
 
 /// All claims, paper by paper.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let papers: [&'static [Claim]; 15] = [
+    let papers: [&'static [Claim]; 16] = [
         thesis::CLAIMS,
         paper1::CLAIMS,
+        paper1_buffer::CLAIMS,
         paper1_sizes::CLAIMS,
         paper2::CLAIMS,
         paper2_range::CLAIMS,

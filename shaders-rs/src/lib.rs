@@ -134,8 +134,8 @@ stages! {
         split_volumes::textured::SplitTextured<coverage_table::BlendedTables>:
             "split-volumes.textured-blended" 1,
         split_volumes::resolve::ResolveSplit: "split-volumes.resolve" 1,
-        penumbra::face::WedgeFace: "penumbra.wedge-face" 1,
-        penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 2,
+        penumbra::face::WedgeFace: "penumbra.wedge-face" 2,
+        penumbra::crossing::WedgeCrossing: "penumbra.wedge-crossing" 3,
         penumbra::inside::WedgeInside: "penumbra.wedge-inside" 2,
         penumbra::tiles::TileClasses: "penumbra.tile-classes" 1,
         penumbra::buffers::DepthCopy: "penumbra.depth-copy" 1,

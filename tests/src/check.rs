@@ -13,7 +13,12 @@ use crate::twin::{TwinCase, render_with};
 /// The configuration that a seed's case runs under.
 #[must_use]
 pub fn config_of(seed: u64) -> GpuConfig {
-    let mut r = Random::new(seed ^ 0x5eed_c0de);
+    random_config(&mut Random::new(seed ^ 0x5eed_c0de))
+}
+
+/// Any configuration.
+#[must_use]
+pub fn random_config(r: &mut Random) -> GpuConfig {
     GpuConfig {
         threads: r.pick(&[1, 2, 3]),
         tile: r.pick(&[16, 32, 64, 128]),

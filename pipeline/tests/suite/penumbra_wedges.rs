@@ -402,6 +402,37 @@ fn levels_of_quads_come_near_to_continuous_intensities() {
     }
 }
 
+/// Full light of `shades=k` is k: the buffer holds whole steps of it, penumbrae have as many,
+/// and no pixel is off by more than rounding of the wedges that meet in it.
+#[test]
+fn fewer_shades_are_the_same_shadow_in_larger_steps() {
+    for name in ["eg-logo", "adversarial-eye-in-shadow"] {
+        let scene = with_sphere(scene(name), 0.3);
+        for planes in ["cancel", "evaluate", "naive"] {
+            let planes = format!("side-planes={planes}");
+            let whole = picture(&scene, ORIGINAL, &[&planes]).visibility;
+            for shades in [7i16, 31] {
+                let set = format!("shades={shades}");
+                let held = buffer(&scene, ORIGINAL, &[&planes, &set]);
+                assert_eq!(held.iter().filter(|v| **v >= 0).max(), Some(&shades));
+                let steps: std::collections::BTreeSet<_> =
+                    held.iter().map(|v| (*v).clamp(0, shades)).collect();
+                assert!(
+                    steps.len() > usize::from(shades.unsigned_abs()) / 2,
+                    "{steps:?}"
+                );
+                let drawn = picture(&scene, ORIGINAL, &[&planes, &set]).visibility;
+                let step = 1.0 / f32::from(shades);
+                let pairs = || drawn.iter().zip(&whole).filter(|(d, _)| !d.is_nan());
+                let off = pairs().filter(|(d, w)| (*d - *w).abs() > 1.01 * step);
+                assert!(off.count() * 200 < drawn.len(), "{name}, {planes}, {set}");
+                let mean = pairs().map(|(d, w)| d - w).sum::<f32>() / pairs().count() as f32;
+                assert!(mean.abs() < 0.1 * step, "{name}, {planes}, {set}: {mean}");
+            }
+        }
+    }
+}
+
 /// Steps of intensity lie half above and half below the ramp that they stand for.
 #[test]
 fn levels_are_in_the_middle_of_their_steps() {

@@ -16,7 +16,7 @@ use gnomon_raster::{F32, Lanes, Mask, uniforms};
 
 use super::intensity::{Distances, IntensityRates, Interpolation, quotient};
 use super::plane::{ScreenPlane, ScreenPoint};
-use super::{FULL, seen};
+use super::seen;
 
 /// The intensity in a side plane. It uses what two neighbours share and nothing
 /// else, so both round it alike and it cancels.
@@ -46,14 +46,17 @@ pub struct WedgeCrossing {
     /// enters or leaves, on front and back planes too, and the difference rounded once, as
     /// in the paper's pseudocode (§4): neighbours round apart.
     pub sides: Option<[SideIntensity; 2]>,
-    /// 255 times the intensity at the eye, rounded; for rays that start inside.
+    /// `shades` times the intensity at the eye, rounded; for rays that start inside.
     pub at_eye: f32,
+    /// The buffer's full light: as many steps of grey has a penumbra (the paper's k, 255).
+    pub shades: f32,
 }
 uniforms!(WedgeCrossing {
     planes,
     rates,
     sides,
-    at_eye
+    at_eye,
+    shades
 });
 
 /// Where a ray enters or leaves, and the rounded intensity there.
@@ -133,19 +136,19 @@ impl WedgeCrossing {
         let at = ScreenPoint { q, ..*point };
         match (k, &self.sides) {
             (_, None) => self.value_at(&at),
-            (0, _) => F32::splat(l, FULL),
+            (0, _) => F32::splat(l, self.shades),
             (1, _) => zero,
             (_, Some(sides)) => {
                 let side = &sides[k - 2];
                 let front = side.between[0].at(&at).max(zero);
                 let back = side.between[1].at(&at).max(zero);
                 let s = quotient(back, front * side.back_over_front + back);
-                rounded(self.interpolation().apply(s))
+                self.rounded(self.interpolation().apply(s))
             }
         }
     }
 
-    /// The intensity at a surface inside, times 255; rounded where side planes are.
+    /// The intensity at a surface inside, times `shades`; rounded where side planes are.
     #[inline(always)]
     fn value_at<L: Lanes>(&self, point: &ScreenPoint<L>) -> F32<L> {
         let zero = F32::splat(point.q.lanes(), 0.0);
@@ -157,9 +160,15 @@ impl WedgeCrossing {
             second: second.at(point).max(zero),
         });
         match self.sides {
-            Some(_) => rounded(s),
-            None => s * FULL,
+            Some(_) => self.rounded(s),
+            None => s * self.shades,
         }
+    }
+
+    /// The buffer's whole number for an intensity.
+    #[inline(always)]
+    fn rounded<L: Lanes>(&self, s: F32<L>) -> F32<L> {
+        (s * self.shades).round_ties_even()
     }
 
     #[inline(always)]
@@ -174,9 +183,4 @@ fn pick<L: Lanes>(first: Mask<L>, a: Event<L>, b: Event<L>) -> Event<L> {
         q: first.select_f32(a.q, b.q),
         value: first.select_f32(a.value, b.value),
     }
-}
-
-#[inline(always)]
-fn rounded<L: Lanes>(s: F32<L>) -> F32<L> {
-    (s * FULL).round_ties_even()
 }

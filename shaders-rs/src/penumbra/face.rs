@@ -4,7 +4,8 @@
 //! only computed at surfaces inside: full light at front planes, none at back planes, and
 //! at side planes none either, since what a wedge gains there its neighbour takes
 //! (figure 10). What is left of a wedge then is a step of 255 at its front plane and the
-//! intensity of surfaces inside. It is drawn by the faces on the front plane's side of the
+//! intensity of surfaces inside. (255 is the shades of grey that the buffer tells apart, the
+//! paper's k of §4: [`WedgeFace::shades`].) It is drawn by the faces on the front plane's side of the
 //! eye, of which each ray meets one; the paper takes those that face the eye.
 
 use gnomon_raster::shader::{Fragment, FragmentOutputs, FragmentShader};
@@ -12,8 +13,8 @@ use gnomon_raster::{F32, Lanes, Mask, uniforms};
 
 use super::inside::Values;
 use super::intensity::IntensityRates;
+use super::seen;
 use super::tiles::WedgePlanes;
-use super::{FULL, seen};
 
 /// The face that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +42,15 @@ pub struct WedgeFace {
     pub rates: IntensityRates,
     /// What is drawn.
     pub face: CrossedFace,
+    /// The buffer's full light: as many steps of grey has a penumbra (the paper's k).
+    pub shades: f32,
 }
-uniforms!(WedgeFace { wedge, rates, face });
+uniforms!(WedgeFace {
+    wedge,
+    rates,
+    face,
+    shades
+});
 
 impl FragmentShader for WedgeFace {
     fn outputs(&self) -> FragmentOutputs {
@@ -62,7 +70,7 @@ impl FragmentShader for WedgeFace {
         let inside = self.is_inside(l, &values) & surface;
         f.discard(!(passed | inside));
         let step = passed.select_f32(F32::splat(l, self.step(f.front_facing())), zero);
-        let light = inside.select_f32(values.light(&self.rates), zero);
+        let light = inside.select_f32(values.light(&self.rates, self.shades), zero);
         f.set_color(0, [step + light, zero, zero, zero]);
     }
 }
@@ -91,11 +99,11 @@ impl WedgeFace {
 
     fn step(&self, front_facing: bool) -> f32 {
         match self.face {
-            CrossedFace::FrontEntered => -FULL,
-            CrossedFace::FrontLeft => FULL,
+            CrossedFace::FrontEntered => -self.shades,
+            CrossedFace::FrontLeft => self.shades,
             CrossedFace::Other => 0.0,
-            CrossedFace::Boundary if front_facing => -FULL,
-            CrossedFace::Boundary => FULL,
+            CrossedFace::Boundary if front_facing => -self.shades,
+            CrossedFace::Boundary => self.shades,
         }
     }
 }

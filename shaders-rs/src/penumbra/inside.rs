@@ -94,7 +94,7 @@ impl FragmentShader for WedgeInside {
         if !counted {
             f.discard(!inside);
         }
-        let light = inside.select_f32(values.light(&self.rates), zero);
+        let light = inside.select_f32(values.light(&self.rates, FULL), zero);
         f.set_color(0, [umbra + light, zero, zero, zero]);
     }
 }
@@ -141,9 +141,9 @@ impl<L: Lanes> Values<L> {
             & self.second.gt(zero)
     }
 
-    /// 255 times the intensity, rounded; meaningful inside.
+    /// `full` times the intensity, rounded; meaningful inside.
     #[inline(always)]
-    pub(super) fn light(&self, rates: &IntensityRates) -> F32<L> {
+    pub(super) fn light(&self, rates: &IntensityRates, full: f32) -> F32<L> {
         let zero = F32::splat(self.front.lanes(), 0.0);
         let s = rates.intensity(&Distances {
             front: self.front.max(zero),
@@ -151,6 +151,6 @@ impl<L: Lanes> Values<L> {
             first: self.first,
             second: self.second,
         });
-        (s * FULL).round_ties_even()
+        (s * full).round_ties_even()
     }
 }

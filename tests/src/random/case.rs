@@ -22,16 +22,30 @@ const COLOR: [Format; 9] = [
 /// The case of a seed.
 #[must_use]
 pub fn random_case(seed: u64) -> TwinCase {
-    let mut r = Random::new(seed);
-    let size = random_size(&mut r);
+    let mut case = without_textures(&mut Random::new(seed));
+    // Numbers of their own, so that cases are what they were before there were textures.
+    texture::add(&mut Random::new(seed ^ 0x7e87_07e5), &mut case);
+    case
+}
+
+/// The case of random numbers.
+#[must_use]
+pub fn case_of(mut r: Random) -> TwinCase {
+    let mut case = without_textures(&mut r);
+    texture::add(&mut r, &mut case);
+    case
+}
+
+fn without_textures(r: &mut Random) -> TwinCase {
+    let size = random_size(r);
     let pixels = size[0] as usize * size[1] as usize;
-    let depth = (!r.one_in(5)).then(|| depth_image(&mut r, pixels));
+    let depth = (!r.one_in(5)).then(|| depth_image(r, pixels));
     let images = if depth.is_none() {
         r.between(1, 4)
     } else {
         r.pick(&[0, 1, 1, 1, 2, 3, 4])
     };
-    let color = (0..images).map(|_| color_image(&mut r, pixels)).collect();
+    let color = (0..images).map(|_| color_image(r, pixels)).collect();
     let mut case = TwinCase {
         size,
         color,
@@ -40,10 +54,9 @@ pub fn random_case(seed: u64) -> TwinCase {
         passes: Vec::new(),
     };
     for _ in 0..r.pick(&[1, 1, 2, 3]) {
-        let pass = random_pass(&mut r, &case);
+        let pass = random_pass(r, &case);
         case.passes.push(pass);
     }
-    texture::add(seed, &mut case);
     case
 }
 

@@ -13,11 +13,10 @@ use super::{Random, look_up, state, texture};
 use crate::api::{Use, shaders};
 use crate::twin::{ColorSource, DepthSource, Discard, Program, TwinDraw};
 
-/// What became of everything that a seed tries, in order: fragments written, or
+/// What became of everything that random numbers try, in order: fragments written, or
 /// why not.
 #[must_use]
-pub fn misuse(seed: u64) -> Vec<Result<u64, Error>> {
-    let mut r = Random::new(seed ^ 0xbad_c0de);
+pub fn misuse(mut r: Random) -> Vec<Result<u64, Error>> {
     let mut results = Vec::new();
     let mut gpu = match gpu(&mut r) {
         Ok(gpu) => gpu,

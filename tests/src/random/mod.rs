@@ -8,7 +8,7 @@ mod misuse;
 mod state;
 mod texture;
 
-pub use case::random_case;
+pub use case::{case_of, random_case};
 pub use geometry::{Screen, grid_triangulation};
 pub use misuse::misuse;
 pub use texture::{sampler as random_sampler, texture as random_texture};
@@ -17,6 +17,8 @@ pub use texture::{sampler as random_sampler, texture as random_texture};
 #[derive(Clone, Debug)]
 pub struct Random {
     state: u64,
+    /// What it says first, last number first.
+    given: Vec<u32>,
 }
 
 impl Random {
@@ -25,10 +27,24 @@ impl Random {
     pub fn new(seed: u64) -> Self {
         let mut r = Self {
             state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15),
+            given: Vec::new(),
         };
         r.next();
         r.next();
         r
+    }
+
+    /// Numbers of these bytes, so that whoever chooses bytes chooses the case; when they
+    /// are used up, those of seed 0.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8]) -> Self {
+        let words = bytes.chunks_exact(4).rev();
+        Self {
+            given: words
+                .map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]]))
+                .collect(),
+            ..Self::new(0)
+        }
     }
 
     /// 32 random bits.
@@ -37,6 +53,9 @@ impl Random {
         reason = "an endless generator is no iterator here"
     )]
     pub fn next(&mut self) -> u32 {
+        if let Some(word) = self.given.pop() {
+            return word;
+        }
         let s = self.state;
         self.state = s
             .wrapping_mul(6_364_136_223_846_793_005)
@@ -96,5 +115,12 @@ mod tests {
             Random::new(7).array::<_, 3>(Random::next),
             Random::new(7).array::<_, 3>(Random::next)
         );
+    }
+
+    #[test]
+    fn bytes_are_the_first_numbers() {
+        let mut r = Random::of_bytes(&[1, 0, 0, 0, 0, 1, 0, 0, 9]);
+        assert_eq!([r.next(), r.next()], [1, 256]);
+        assert_eq!(r.next(), Random::new(0).next());
     }
 }

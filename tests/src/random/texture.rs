@@ -11,12 +11,11 @@ use super::look_up;
 use crate::twin::{TextureSource, TextureUse, TwinCase, TwinPass, TwinTexture};
 
 /// Makes half of the cases read textures, in half of their draws.
-pub(super) fn add(seed: u64, case: &mut TwinCase) {
-    let mut r = Random::new(seed ^ 0x7e87_07e5);
+pub(super) fn add(r: &mut Random, case: &mut TwinCase) {
     if r.one_in(2) {
         return;
     }
-    case.textures = (0..r.between(1, 3)).map(|_| texture(&mut r)).collect();
+    case.textures = (0..r.between(1, 3)).map(|_| texture(r)).collect();
     for k in 0..case.passes.len() {
         let sources = sources(case, &case.passes[k]);
         for d in 0..case.passes[k].draws.len() {
@@ -29,10 +28,10 @@ pub(super) fn add(seed: u64, case: &mut TwinCase) {
                 draw.textures = (0..slots)
                     .map(|_| TextureUse {
                         source: r.pick(&sources),
-                        sampler: sampler(&mut r),
+                        sampler: sampler(r),
                     })
                     .collect();
-                look_up::add(&mut r, program, slots);
+                look_up::add(r, program, slots);
             }
         }
     }

@@ -29,6 +29,7 @@ impl CrossingDraws<'_> {
             rates: screen::rates(wedge, self.settings.penumbra.interpolation),
             sides: evaluate.then(|| self.screen.sides(view, wedge)),
             at_eye: self.wedge_at_eye(turn, wedge).unwrap_or(0.0),
+            shades: self.settings.full(),
         };
         let pipeline = RenderPipeline {
             label: "wedge".into(),

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use gnomon_raster::state::{ColorTargetState, DepthStencilState};
 use gnomon_raster::{Draw, IndexBuffer, RenderPipeline, VertexBuffer};
-use gnomon_shaders::penumbra::FULL;
 use gnomon_shaders::penumbra::buffers::Boundary;
 use gnomon_shaders::penumbra::intensity::Interpolation;
 use gnomon_shaders::transform::HomogeneousPoints;
@@ -69,7 +68,7 @@ impl CrossingDraws<'_> {
         turn.notes.warnings.extend(warning);
         turn.notes
             .warnings
-            .extend(start_warning(light, found.at_eye));
+            .extend(start_warning(light, found.at_eye, self.settings.full()));
         turn.notes.warnings.extend(report.warnings(light));
     }
 
@@ -135,7 +134,8 @@ impl CrossingDraws<'_> {
         volume: &SoftVolume,
         found: &mut LightWedges,
     ) {
-        let umbra = FULL * volume.winding(&caster.object.mesh, turn.scene.camera.eye) as f32;
+        let umbra = self.settings.full()
+            * volume.winding(&caster.object.mesh, turn.scene.camera.eye) as f32;
         let wedges = volume.wedges.iter();
         let penumbra: f32 = wedges.filter_map(|w| self.wedge_at_eye(turn, w)).sum();
         found.at_eye += penumbra - umbra;
@@ -145,7 +145,7 @@ impl CrossingDraws<'_> {
         };
     }
 
-    /// 255 times the eye's intensity in a wedge that holds it, rounded.
+    /// Full light times the eye's intensity in a wedge that holds it, rounded.
     pub(super) fn wedge_at_eye(
         &self,
         turn: &LightTurn<'_, '_>,
@@ -159,6 +159,6 @@ impl CrossingDraws<'_> {
             Interpolation::Linear => s,
             Interpolation::Smoothstep => smoothed(s),
         };
-        inside.then(|| ((s as f32).clamp(0.0, 1.0) * FULL).round_ties_even())
+        inside.then(|| ((s as f32).clamp(0.0, 1.0) * self.settings.full()).round_ties_even())
     }
 }

@@ -64,6 +64,7 @@ impl CrossingDraws<'_> {
                 wedge: planes,
                 rates,
                 face,
+                shades: self.settings.full(),
             };
             found
                 .wedges
@@ -91,6 +92,7 @@ impl CrossingDraws<'_> {
                 |w| screen::rates(w, interpolation),
             ),
             face: CrossedFace::Boundary,
+            shades: self.settings.full(),
         };
         self.face(view, "boundary", (faces, CullMode::None), &shader)
     }

@@ -33,7 +33,7 @@ impl CrossingDraws<'_> {
             let round_eye =
                 winding::of_triangles(closed.chain(cap), turn.scene.camera.eye) + volume.all_around;
             found.start -= round_eye as f32;
-            found.at_eye -= 255.0 / levels as f32 * round_eye as f32;
+            found.at_eye -= round_eye as f32;
             let mut pipeline = hard::boundary_pipeline("level", view, Method::DepthPass);
             pipeline.fragment = Some(Boundary { front: -1.0 }.stage());
             pipeline.color_targets = vec![ColorTargetState::ADDITIVE];

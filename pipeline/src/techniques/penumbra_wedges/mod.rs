@@ -36,6 +36,10 @@
 //! say how many. It changes no bit: the face is moved towards the eye by a pixel of its
 //! slope, more than its depth may be off.
 //!
+//! `shades=k` is full light in the buffer in place of 255, and the number of steps of a
+//! penumbra (§4). 16 signed bits hold 127 overlaps of 255; an 8-bit buffer would hold three
+//! of 31.
+//!
 //! `levels=N` is the approximation by hardware of §7 and figure 15: N quads in place of each
 //! wedge, counted by the depth test, and N + 1 intensities. The paper had 6 to 16.
 //!
@@ -151,10 +155,22 @@ const LEVELS: Param<Option<u32>> = Param::<Option<u32>>::whole_or(
     "continuous intensities, or as many quads for each wedge, counted by the depth test",
 );
 
+/// Without quads, which are shades themselves.
+const SHADES: Param<u32> = Param::whole(
+    "shades",
+    FULL as u64,
+    [1, FULL as u64],
+    "full light in the buffer, and so the steps of a penumbra: fewer leave room for more \
+     overlaps in a buffer of fewer bits (paper I's k)",
+)
+.when(Condition::Is("levels", &["continuous"]));
+
 /// What parameters decide.
 struct CrossingSettings {
     /// Quads in place of each wedge.
     levels: Option<u32>,
+    /// The paper's k.
+    shades: u32,
     start: Start,
     side_planes: SidePlanes,
     culling: Culling,
@@ -172,6 +188,10 @@ impl CrossingSettings {
                 SidePlanes::Cancel if levels.is_none() => params.get(&CULLING)?,
                 _ => Culling::None,
             },
+            shades: match levels {
+                Some(levels) => levels,
+                None => params.get(&SHADES)?,
+            },
             levels,
             penumbra: PenumbraSettings::read(params)?,
         })
@@ -181,7 +201,7 @@ impl CrossingSettings {
 impl CrossingSettings {
     /// What the buffer holds in full light.
     fn full(&self) -> f32 {
-        self.levels.map_or(FULL, |n| n as f32)
+        self.shades as f32
     }
 }
 
@@ -201,6 +221,7 @@ impl Technique for PenumbraWedges {
                 SIDE_PLANES.info,
                 CULLING.info,
                 LEVELS.info,
+                SHADES.info,
                 INTERPOLATION.info
             ],
             PenumbraSettings::OTHER_PARAMS,
@@ -296,7 +317,7 @@ impl LightWedges {
         Self {
             is_hard: false,
             start,
-            at_eye: FULL,
+            at_eye: start,
             volumes: Vec::new(),
             wedges: Vec::new(),
         }
@@ -345,12 +366,12 @@ impl CrossingDraws<'_> {
 }
 
 /// Says so where the eye is not in full light.
-fn start_warning(light: usize, start: f32) -> Option<Warning> {
-    (start != FULL).then(|| Warning {
+fn start_warning(light: usize, start: f32, full: f32) -> Option<Warning> {
+    (start != full).then(|| Warning {
         code: "eye-in-shadow",
         count: 1,
         message: format!(
-            "light {light}: the eye is in shadow, at {start} of 255; start=lit would be wrong here"
+            "light {light}: the eye is in shadow, at {start} of {full}; start=lit would be wrong here"
         ),
     })
 }

@@ -1,0 +1,6 @@
+//! Wavefront OBJ.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| gnomon_fuzz::model("f.obj", data));

@@ -45,5 +45,5 @@ mod _gnomon {
     const MAX_THREADS: usize = gnomon::raster::MAX_THREADS;
     /// The version of Gnomon.
     #[pymodule_export]
-    const __version__: &str = env!("CARGO_PKG_VERSION");
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

@@ -36,7 +36,7 @@ def test_two_workers_give_what_one_process_gives(tmp_path):
 
 
 def test_mistakes_end_before_the_work(tmp_path):
-    words = [sys.executable, SCRIPT, "cylinder", "--techniques", "pcs", "--serial"]
+    words = [sys.executable, SCRIPT, "cylinder", "--techniques", "pcsss", "--serial"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "did you mean 'pcss'" in done.stderr
     assert list(tmp_path.iterdir()) == []

@@ -23,7 +23,7 @@ BAD = [
     (lambda: gnomon.Scene.from_toml("x = ["), ValueError, "<toml>:1:"),
     (lambda: gnomon.Scene.from_toml("[camera]\neye = 3"), ValueError, "<toml>:2:7"),
     (lambda: gnomon.Scene("walk").at(float("inf")), ValueError, "time is inf"),
-    (lambda: gnomon.render("cylinder", "pcs"), ValueError, "did you mean 'pcss'"),
+    (lambda: gnomon.render("cylinder", "pcsss"), ValueError, "did you mean 'pcss'"),
     (lambda: gnomon.render("cylinder", "pcss:samples"), ValueError, "expected KEY=VALUE"),
     (lambda: gnomon.render("cylinder", "pcss", {"sampels": 1}), ValueError, "samples"),
     (lambda: gnomon.render("cylinder", "pcss", {"samples": -1}), ValueError, "'-1'; valid are"),
@@ -54,6 +54,7 @@ BAD = [
     (lambda: TRACE.pixel(0, 0, image="nothing"), ValueError, "it has .*color"),
     (lambda: TRACE.replay(9), ValueError, "frame 9"),
     (lambda: TRACE.traffic("imr"), ValueError, "valid are naive, compulsory"),
+    (lambda: TRACE.traffic("imr-2003"), ValueError, "use --set color-format=rgba8"),
     (lambda: TRACE.traffic("nowhere.toml"), FileNotFoundError, "nowhere.toml"),
     (lambda: TRACE.traffic("naive", by="row"), ValueError, "by is 'row'; valid are: pass"),
     (lambda: TRACE.traffic("naive", merged=True), ValueError, "profiles of tilers"),
@@ -94,7 +95,7 @@ def test_nothing_outside_the_folder_is_read(tmp_path):
     scene = folder / "s.toml"
     scene.write_text(
         "[camera]\neye = [0, 2, 5]\ntarget = [0, 0, 0]\n"
-        "[[lights]]\npoint = { position = [0, 9, 0] }\n"
+        "[[lights]]\nshape.point = { position = [0, 9, 0] }\n"
         '[[objects]]\nmesh.obj = "../box.obj"\ncasts = false\n'
     )
     with pytest.raises(ValueError, match="outside the folder"):

@@ -14,7 +14,7 @@ from conftest import ROOT, SIZE
 CASES = [
     ("cylinder", "shadow-volumes", {"method": "zfail"}),
     ("parallel-plates", "pcss:samples=16", {}),
-    ("columns", "soft-shadow-volumes", {"buffer": "rgba16f"}),
+    ("columns", "soft-shadow-volumes", {"buffer": "rgba8x2"}),
     ("parallel-plates", "unshadowed", {}),
 ]
 
@@ -83,7 +83,7 @@ background = [1.0, 0.5, 0.0]
 eye = [0, 2, 5]
 target = [0, 40, 0]
 [[lights]]
-point = { position = [0, 9, 0] }
+shape.point = { position = [0, 9, 0] }
 [[objects]]
 mesh.box = { size = [1, 1, 1] }
 """

@@ -24,7 +24,7 @@ WORK = {
     "record": lambda: gnomon.record(SCENE, size=(160, 120)),
     "replay": lambda: TRACE.replay(),
     "pixel": lambda: TRACE.pixel(160, 200),
-    "traffic": lambda: TRACE.traffic("imr-2003"),
+    "traffic": lambda: TRACE.traffic("imr-2008"),
     "accesses": lambda: TRACE.accesses(),
     "open": lambda: gnomon.Trace.from_bytes(DATA),
     "scene": lambda: gnomon.Scene("peer-c"),

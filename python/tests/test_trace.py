@@ -91,7 +91,7 @@ def test_values_are_before_and_after(recorded):
 def test_traffic_is_that_of_the_command_line(cli, recorded, tmp_path, by):
     path, _ = recorded
     trace = gnomon.Trace.open(path)
-    for profile in ("imr-2003", "tbr-mali"):
+    for profile in ("imr-2008", "tbr-mali"):
         found = trace.traffic(profile, by=by)
         told = cli("traffic", path, "--profile", profile, "--by", by, "--json")
         assert found.document == told and found.totals == told["totals"]

@@ -20,9 +20,9 @@ from gnomon._gnomon import (
     Scene,
     SceneObject,
     Truth,
-    __version__,
     profiles,
 )
+from gnomon._gnomon import VERSION as __version__
 from gnomon._scenes import SceneInfo, scenes
 from gnomon._techniques import Parameter, Technique, technique, techniques
 from gnomon._trace import PixelHistory, Trace, Traffic, record

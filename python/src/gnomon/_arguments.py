@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from operator import index
-from typing import Union
+from typing import Any, Union
 
 import numpy as np
 
@@ -77,9 +77,11 @@ def text_of(name: str, value: Value) -> str:
         return "on" if value else "off"
     if isinstance(value, float):
         # Whole numbers as such: parameters that take only those take 8.0 too.
-        return str(int(value)) if value.is_integer() and abs(value) < 2**53 else repr(value)
+        number = float(value)
+        return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     if isinstance(value, Sequence):
-        return "+".join(str(index(number)) for number in value)
+        several: Sequence[Any] = value
+        return "+".join(str(index(one)) for one in several)
     try:
         return str(index(value))
     except TypeError:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 MAX_SIZE: int
 MAX_THREADS: int
-__version__: str
+VERSION: str
 
 _Path = str | os.PathLike[str]
 #: Threads, side of tiles, instruction set, whether zmin/zmax skip work.

@@ -71,7 +71,7 @@ def techniques() -> list[Technique]:
 
     >>> pcss = technique("pcss")
     >>> pcss.shadows, pcss.parameter("samples").type
-    ('soft', 'whole')
+    ('soft', 'square')
     """
     return list(_all())
 

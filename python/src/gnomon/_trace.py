@@ -52,7 +52,8 @@ class PixelHistory:
     @property
     def fragments(self) -> NDArray[np.void]:
         """The events that are fragments."""
-        return self.events[self.events["kind"] == KINDS.index("fragment")]
+        of_kind: NDArray[np.void] = self.events[self.events["kind"] == KINDS.index("fragment")]
+        return of_kind
 
 
 @dataclass(frozen=True)

@@ -108,13 +108,14 @@ impl Scene {
         )))
     }
 
-    /// The scene that `text` describes; what it names is looked for in `folder`.
+    /// The scene that `text` describes; what it names is looked for in `folder`, by
+    /// default the current one.
     #[staticmethod]
-    #[pyo3(signature = (text, *, folder = PathBuf::from("."), time = 0.0, allow_outside = false))]
+    #[pyo3(signature = (text, *, folder = None, time = 0.0, allow_outside = false))]
     fn from_toml(
         py: Python<'_>,
         text: &str,
-        folder: PathBuf,
+        folder: Option<PathBuf>,
         time: f64,
         allow_outside: bool,
     ) -> PyResult<Self> {
@@ -122,7 +123,7 @@ impl Scene {
         check_length(text)?;
         let origin = Origin::Text {
             text: text.into(),
-            folder,
+            folder: folder.unwrap_or_else(|| PathBuf::from(".")),
             outside: outside(allow_outside),
         };
         py.detach(|| origin.at(time)).map_err(raise)

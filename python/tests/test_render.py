@@ -136,11 +136,12 @@ def test_counters_are_exact_integers_and_add_up():
 
 
 def test_warnings_are_told():
-    frame = gnomon.render("cylinder", "soft-shadow-volumes", {"buffer": "rgba8"}, size=(32, 24))
-    assert frame.warnings == frame.document["warnings"]
-    # A setting without effect.
-    vain = gnomon.render("cylinder", "pcss", {"receiver-plane": True}, size=(32, 24))
-    assert isinstance(vain.warnings, list)
+    """A setting that changes nothing, beside the others, and one that does."""
+    vain = gnomon.render("cylinder", "pcss", {"sampling": "all", "seed": 3}, size=(32, 24))
+    assert vain.warnings == vain.document["warnings"]
+    assert [w["code"] for w in vain.warnings] == ["setting-without-effect"]
+    assert "seed=3 has no effect here" in vain.warnings[0]["message"]
+    assert gnomon.render("cylinder", "pcss", {"seed": 3}, size=(32, 24)).warnings == []
 
 
 def test_moments_of_a_scene():

@@ -18,7 +18,7 @@ def mypy(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
 
 def test_stubs_are_what_the_module_has(tmp_path):
     """Names, arguments and their defaults, both ways."""
-    done = mypy("mypy.stubtest", "gnomon", folder=tmp_path)
+    done = mypy("mypy.stubtest", "gnomon._gnomon", folder=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

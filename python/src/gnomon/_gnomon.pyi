@@ -6,6 +6,25 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "MAX_SIZE",
+    "MAX_THREADS",
+    "VERSION",
+    "Frame",
+    "Replay",
+    "Scene",
+    "SceneObject",
+    "Trace",
+    "Truth",
+    "compare",
+    "profiles",
+    "record",
+    "render",
+    "scenes",
+    "techniques",
+    "truth",
+]
+
 MAX_SIZE: int
 MAX_THREADS: int
 VERSION: str
@@ -29,7 +48,7 @@ class Scene:
     ) -> Scene: ...
     @staticmethod
     def from_toml(
-        text: str, *, folder: _Path = ".", time: float = 0.0, allow_outside: bool = False
+        text: str, *, folder: _Path | None = None, time: float = 0.0, allow_outside: bool = False
     ) -> Scene: ...
     def at(self, time: float) -> Scene: ...
     @property

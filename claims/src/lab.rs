@@ -350,9 +350,10 @@ fn as_published(technique: &dyn Technique) -> &'static [&'static str] {
         "mip-sharper=0.8",
     ];
     let has = |name: &str| technique.params().iter().any(|p| p.name == name);
-    match (has("plane-offset"), has("horizon")) {
-        (true, _) => CONVOLUTION,
-        (_, true) => &["horizon=off"],
+    match [has("plane-offset"), has("horizon"), has("grazing")] {
+        [true, ..] => CONVOLUTION,
+        [_, true, _] => &["horizon=off"],
+        [.., true] => &["grazing=bands"],
         _ => &[],
     }
 }

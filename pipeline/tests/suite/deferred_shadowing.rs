@@ -373,6 +373,74 @@ fn coarse_meshes_are_warned_of() {
 
 /// Nearer to sampled directions than a picture without shadows between objects, and
 /// maps of more texels are worth more than more lights are.
+/// A map of darkness but for one texel, and its light times solid angle.
+fn low_sun(row: usize) -> (Environment, f64) {
+    let settings = MapSettings {
+        side: 64,
+        ..MapSettings::default()
+    };
+    let mut texels = vec![[0.0; 3]; 64 * 32];
+    texels[64 * row + 9] = [1000.0; 3];
+    let map = Environment::of_radiance("low sun", [64, 32], texels, settings).unwrap();
+    let edge = |row: usize| (0.5 - row as f64 / 32.0) * std::f64::consts::PI;
+    let height = edge(row).sin() - edge(row + 1).sin();
+    (map, 1000.0 * std::f64::consts::TAU / 64.0 * height)
+}
+
+/// Six bands leave a floor 6% of a sun that has set; with the cosine it has nothing, and
+/// before that what Lambert's law says.
+#[test]
+fn a_small_light_gives_a_floor_its_cosine_and_nothing_once_it_has_set() {
+    let floor = || flat("floor", shape::plane(4.0, 0.0)).receiver_only();
+    for (row, cosine) in [(12, 0.3365), (15, 0.0490), (16, 0.0), (18, 0.0)] {
+        let (map, energy) = low_sun(row);
+        let mut scene = alone(floor());
+        // What casts is where nobody sees it or its shadow.
+        let below = shape::icosphere(1, 0.3, DVec3::new(0.0, -3.0, 0.0));
+        scene.objects.push(flat("ball", below));
+        let scene = lit_by(scene, &map);
+        let of = |set: &str| {
+            let done = shown(&scene, &["format=f32", set]);
+            let seen = (done.color.iter().zip(&done.visibility)).filter(|(_, v)| !v.is_nan());
+            let all: Vec<f64> = seen
+                .map(|(c, _)| f64::from(c[0]) / 0.8 / energy * std::f64::consts::PI)
+                .collect();
+            assert!(all.len() > 1000, "{}", all.len());
+            all.iter().map(|c| (c - cosine).abs()).fold(0.0, f64::max)
+        };
+        let [exact, bands] = ["grazing=exact", "grazing=bands"].map(of);
+        println!("row {row}: {exact:.4} exact, {bands:.4} by bands, off {cosine}");
+        assert!(exact < 0.002, "row {row}: {exact}");
+        assert!(row == 12 || row == 18 || bands > 0.03, "row {row}: {bands}");
+    }
+}
+
+/// Under a map with a sun that has set, the exact cosine is nearer to the reference.
+#[test]
+fn exact_cosines_come_nearer_to_the_reference() {
+    let mut texels: Vec<[f32; 3]> = vec![[0.4; 3]; 64 * 32];
+    texels[64 * 16 + 9] = [600.0; 3];
+    let settings = MapSettings {
+        side: 64,
+        ..MapSettings::default()
+    };
+    let map = Environment::of_radiance("evening", [64, 32], texels, settings).unwrap();
+    let scene = lit_by(two_over_a_floor(), &map);
+    let map = &scene.environment.as_ref().unwrap().map;
+    let directions = Directions {
+        count: 1024,
+        seed: 1,
+    };
+    let truth = EnvironmentReference::new(&scene, map, SIZE, directions, true, &|| {});
+    let of = |set: &str| {
+        let done = shown(&scene, &[set]);
+        RadianceScore::measure(&truth, &done).unwrap().relative_rmse
+    };
+    let [exact, bands] = ["grazing=exact", "grazing=bands"].map(of);
+    println!("{exact} exact, {bands} by bands");
+    assert!(exact < 0.6 * bands, "{exact} {bands}");
+}
+
 #[test]
 fn maps_come_near_the_reference() {
     let scene = lit_by(two_over_a_floor(), &sky(32));

@@ -32,6 +32,7 @@ pub(crate) fn drawn_on(
 pub(crate) fn as_published(technique: &dyn Technique) -> Vec<&'static str> {
     let added = [
         ("horizon", "horizon=off"),
+        ("grazing", "grazing=bands"),
         ("plane-offset", "plane-offset=0"),
         ("mip-sharper", "mip-sharper=0.8"),
     ];

@@ -414,7 +414,8 @@ fn fewer_shades_are_the_same_shadow_in_larger_steps() {
             for shades in [7i16, 31] {
                 let set = format!("shades={shades}");
                 let held = buffer(&scene, ORIGINAL, &[&planes, &set]);
-                assert_eq!(held.iter().filter(|v| **v >= 0).max(), Some(&shades));
+                let lit = held.iter().filter(|v| **v == shades).count();
+                assert!(4 * lit > held.len(), "{name}, {planes}, {set}: {lit} lit");
                 let steps: std::collections::BTreeSet<_> =
                     held.iter().map(|v| (*v).clamp(0, shades)).collect();
                 assert!(
@@ -424,8 +425,15 @@ fn fewer_shades_are_the_same_shadow_in_larger_steps() {
                 let drawn = picture(&scene, ORIGINAL, &[&planes, &set]).visibility;
                 let step = 1.0 / f32::from(shades);
                 let pairs = || drawn.iter().zip(&whole).filter(|(d, _)| !d.is_nan());
-                let off = pairs().filter(|(d, w)| (*d - *w).abs() > 1.01 * step);
-                assert!(off.count() * 200 < drawn.len(), "{name}, {planes}, {set}");
+                // Of the naive form neighbours round apart, so that a step more is lost.
+                let near = if planes.ends_with("naive") {
+                    2.01
+                } else {
+                    1.01
+                } * step;
+                let off = pairs().filter(|(d, w)| (*d - *w).abs() > near).count();
+                println!("{name}, {planes}, {set}: {off} of {}", drawn.len());
+                assert!(off * 100 < drawn.len(), "{name}, {planes}, {set}: {off}");
                 let mean = pairs().map(|(d, w)| d - w).sum::<f32>() / pairs().count() as f32;
                 assert!(mean.abs() < 0.1 * step, "{name}, {planes}, {set}: {mean}");
             }

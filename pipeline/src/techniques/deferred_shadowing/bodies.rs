@@ -192,10 +192,14 @@ impl Evaluation {
         own: DVec3,
         own_normal: DVec3,
     ) -> f64 {
-        let open = dot(&self.open(own_normal), &self.diffuse.at(own)).max(0.0);
-        let left = self.diffuse(transport, vertex, own).max(0.0);
+        let open = dot(&self.open(own_normal), &self.diffuse.at(own));
+        Self::share(self.diffuse(transport, vertex, own), open)
+    }
+
+    /// Share of transport `open` that is left where there is `left`; both may ring below 0.
+    pub(super) fn share(left: f64, open: f64) -> f64 {
         let little = NEXT_TO_NOTHING / PI;
-        ((left + little) / (open + little)).clamp(0.0, 1.0)
+        ((left.max(0.0) + little) / (open.max(0.0) + little)).clamp(0.0, 1.0)
     }
 }
 
@@ -206,6 +210,11 @@ pub(super) struct Towards {
 }
 
 impl Towards {
+    /// What diffuse coefficients are in that direction.
+    pub(super) fn diffuse(&self, coefficients: &[f64]) -> f64 {
+        dot(coefficients, &self.diffuse)
+    }
+
     /// T and V in that direction, which may ring below 0, and V above 1, of a vertex
     /// with those coefficients.
     pub(super) fn of(&self, [diffuse, glossy]: &[Vec<f64>; 2]) -> [f64; 2] {

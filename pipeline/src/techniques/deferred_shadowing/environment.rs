@@ -7,14 +7,15 @@ use glam::DVec3;
 use gnomon_raster::state::ColorTargetState;
 use gnomon_raster::{
     Draw, Format, LoadOp, Recording, RenderPass, RenderPipeline, Sampler, TextureBinding,
-    TextureDescriptor, TextureId, VertexBuffer,
+    TextureDescriptor, TextureId,
 };
 use gnomon_shaders::deferred::lit::LessObscured;
-use gnomon_shaders::deferred::obscured::{Highlight, ObscuredRadiance, Transported};
+use gnomon_shaders::deferred::obscured::{self, Highlight, ObscuredRadiance};
 use gnomon_shaders::transform::Surfaces;
 
 use super::atlas::{Atlas, Occluders};
 use super::bodies::{Body, Evaluation, bodies};
+use super::grazing;
 use super::keeping::Keeping;
 use super::light::HarmonicLight;
 use super::notes::Found;
@@ -23,7 +24,7 @@ use super::settings::Settings;
 use super::shadows::{Job, turns};
 use super::sheets::Sheets;
 use super::sources::{Source, of_environment};
-use super::transported::{jobs, transported};
+use super::transported::{Lit, Transported, jobs, transported};
 use crate::parts::passes::{SceneDraws, Targets, equal_depth};
 use crate::parts::shadowed_frame::ShadowedFrame;
 use crate::parts::visibility::{VisibilityTexture, attachment, binding};
@@ -104,9 +105,8 @@ struct Deferred<'f, 'a> {
     /// Share of the environment's light that arrives.
     visibility: TextureId,
     atlas: Atlas,
-    /// Vertices of each sheet with the transport of all lights, and which lights reach
-    /// it.
-    transported: Vec<(Arc<VertexBuffer>, Vec<bool>)>,
+    /// Of each sheet.
+    transported: Vec<Transported>,
     jobs: Vec<Job>,
     found: Found,
 }
@@ -133,11 +133,16 @@ impl<'f, 'a> Deferred<'f, 'a> {
             glossy.then_some(bands.glossy_bands),
         );
         let mut found = Found::of(bodies);
-        let evaluation = (Evaluation::new(settings), glossy);
+        let lit = Lit {
+            sources: &sources,
+            weights: &grazing::weights(&sources, settings),
+            evaluation: Evaluation::new(settings),
+            glossy,
+        };
         let transported: Vec<_> = sheets
             .all
             .iter()
-            .map(|s| transported(s, &bodies[s.body], &sources, &evaluation, &mut found))
+            .map(|s| transported(s, &bodies[s.body], &lit, &mut found))
             .collect();
         let jobs = jobs(bodies, sheets, &sources, &transported, settings);
         let maps = jobs.iter().map(|j| j.maps.len()).sum();
@@ -184,6 +189,7 @@ impl<'f, 'a> Deferred<'f, 'a> {
             settings: self.settings,
             draws: frame.draws,
             textures: &self.radiance,
+            transported: &self.transported,
         };
         let mut passes = radiance.passes(frame.targets);
         let jobs = std::mem::take(&mut self.jobs);
@@ -254,7 +260,7 @@ impl<'f, 'a> Deferred<'f, 'a> {
     fn sheets_of(&self, job: &Job) -> impl Iterator<Item = usize> {
         let sheets = self.sheets.all.iter().enumerate();
         sheets
-            .filter(|(k, s)| s.body == job.body && self.transported[*k].1[job.light])
+            .filter(|(k, s)| s.body == job.body && self.transported[*k].reached[job.light])
             .map(|(k, _)| k)
     }
 
@@ -266,7 +272,7 @@ impl<'f, 'a> Deferred<'f, 'a> {
         shader: &ObscuredRadiance,
     ) -> Draw {
         let view = &frame.draws.view;
-        let (own, vertices) = (&self.sheets.all[sheet], &self.transported[sheet].0);
+        let (own, vertices) = (&self.sheets.all[sheet], &self.transported[sheet].vertices);
         let highlight = (self.obscured.glossy.is_some() && is_glossy(own)).then(|| Highlight {
             towards: narrow(self.sources[job.light].at.towards_from(DVec3::ZERO)),
             eye: narrow(view.eye()),
@@ -279,7 +285,7 @@ impl<'f, 'a> Deferred<'f, 'a> {
         };
         let pipeline = RenderPipeline {
             label: "obscured radiance".into(),
-            vertex: Transported {
+            vertex: obscured::Transported {
                 clip_from_world: view.clip_from_world,
                 light: job.light as u32,
             }

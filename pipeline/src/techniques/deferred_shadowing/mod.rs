@@ -20,6 +20,9 @@
 //! Maps of pairs that did not move are those of the frame before (see
 //! [`keeping`]); transport, lights and harmonics of the map are kept by content.
 //!
+//! Small lights near a surface's horizon are taken out of the bands, which cannot tell where
+//! they set: see [`grazing`].
+//!
 //! Known errors, of the method: shadows of one object on another have the softness of
 //! one distance per map; light is smooth between vertices; six bands know no sharp
 //! self-shadow. Of this project: see `below` in [`placing`], which keeps occluders from
@@ -29,6 +32,7 @@ mod atlas;
 mod bodies;
 mod distant;
 mod environment;
+mod grazing;
 mod groups;
 mod keeping;
 mod light;

@@ -16,9 +16,11 @@ use gnomon_shaders::deferred::radiance::{
 };
 
 use super::bodies::{Body, Evaluation, normal_of};
+use super::grazing::Gain;
 use super::light::HarmonicLight;
 use super::settings::Settings;
 use super::sheets::{Sheet, Sheets};
+use super::transported::Transported;
 use crate::geometry::harmonics::{Product, dot, phong_lobe, scale_bands, terms};
 use crate::parts::passes::{SceneDraws, Targets, equal_depth};
 use crate::parts::visibility::{attachment, binding};
@@ -106,6 +108,8 @@ pub(super) struct Radiance<'f, 'a> {
     pub(super) settings: &'f Settings,
     pub(super) draws: &'f SceneDraws<'a>,
     pub(super) textures: &'f RadianceTextures,
+    /// Of each sheet.
+    pub(super) transported: &'f [Transported],
 }
 
 impl Radiance<'_, '_> {
@@ -116,7 +120,9 @@ impl Radiance<'_, '_> {
         let mut passes = vec![off_screen(
             "vertex radiance",
             to(self.textures.vertices),
-            sheets().map(|s| self.diffuse_points(s)).collect(),
+            (sheets().zip(self.transported))
+                .map(|(s, t)| self.diffuse_points(s, &t.gains))
+                .collect(),
         )];
         if let Some(glossy) = &self.textures.glossy {
             let specular = || sheets().filter(|s| is_glossy(s));
@@ -137,8 +143,9 @@ impl Radiance<'_, '_> {
         passes
     }
 
-    /// Equation 2 for each vertex, with the luminance that an open surface would have.
-    fn diffuse_points(&self, sheet: &Sheet<'_, '_>) -> Draw {
+    /// Equation 2 for each vertex, with the luminance that an open surface would have. What
+    /// it gains of small lights is three coefficients more, of light of one colour each.
+    fn diffuse_points(&self, sheet: &Sheet<'_, '_>, gains: &[Gain]) -> Draw {
         let bands = self.settings.transport.bands;
         let body = &self.bodies[sheet.body];
         let light = self.light.turned(&body.rotation(bands));
@@ -155,12 +162,18 @@ impl Radiance<'_, '_> {
         let rows = sheet.vertices.iter().enumerate().flat_map(|(k, &v)| {
             let [x, y] = self.sheets.place(sheet, k);
             let own = sheet.transport.diffuse_of(v as usize);
-            [x, y, open(v)].into_iter().chain(own.iter().copied())
+            let gain = gains.get(k);
+            let open = open(v) + gain.map_or(0.0, |g| g.open as f32);
+            let gained = gain.into_iter().flat_map(|g| g.light.map(|c| c as f32));
+            let row = [x, y, open].into_iter().chain(own.iter().copied());
+            row.chain(gained)
         });
-        let vertices = buffer(rows.collect(), 3 + terms(bands));
+        let colors = if gains.is_empty() { 0 } else { 3 };
+        let vertices = buffer(rows.collect(), 3 + terms(bands) + colors);
         let light = (0..terms(bands)).map(|k| [0, 1, 2].map(|c| light[c][k] as f32));
+        let pure = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let shader = VertexRadiance {
-            light: light.collect(),
+            light: light.chain(pure.into_iter().take(colors)).collect(),
         };
         self.points(sheet, 0, shader.stage(), Carried.stage(), &vertices)
     }

@@ -120,6 +120,23 @@ const PLANE: Param<Plane> = Param::choice(
     "plane whose distance decides how wide a penumbra is: through the point that the shadow of the occluders' centre strikes, or through the receiver's centre (the paper's)",
 );
 
+choices! {
+    /// What a surface has of a small light near its horizon.
+    pub(super) enum Grazing {
+        /// The cosine.
+        Exact = "exact",
+        /// What the bands have of it.
+        Bands = "bands",
+    }
+}
+
+const GRAZING: Param<Grazing> = Param::choice(
+    "grazing",
+    Grazing::Exact.word(),
+    "light of small sources: by the cosine, or by the bands (the paper's), which leave surfaces 6% of a light that has set",
+)
+.when(ENVIRONMENT);
+
 const BANDS: Param<usize> = Param::<usize>::whole(
     "bands",
     6,
@@ -175,6 +192,7 @@ pub(super) struct Settings {
     pub(super) groups: Groups,
     pub(super) combine: Combine,
     pub(super) plane: Plane,
+    pub(super) grazing: Grazing,
     pub(super) transport: TransportSettings,
     pub(super) half_floats: bool,
     pub(super) frame: FrameSettings,
@@ -191,6 +209,7 @@ impl Settings {
         GROUPS.info,
         COMBINE.info,
         PLANE.info,
+        GRAZING.info,
         BANDS.info,
         GLOSSY_BANDS.info,
         DIRECTIONS.info,
@@ -207,6 +226,7 @@ impl Settings {
             groups: params.get(&GROUPS)?,
             combine: params.get(&COMBINE)?,
             plane: params.get(&PLANE)?,
+            grazing: params.get(&GRAZING)?,
             transport: TransportSettings {
                 bands: params.get(&BANDS)?,
                 glossy_bands: params.get(&GLOSSY_BANDS)?,

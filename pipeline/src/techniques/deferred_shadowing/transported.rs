@@ -6,43 +6,84 @@ use std::sync::Arc;
 use glam::DVec3;
 use gnomon_raster::VertexBuffer;
 
-use super::bodies::{Body, Evaluation, coefficients};
+use super::bodies::{Body, Evaluation, coefficients, normal_of};
+use super::grazing::{Facing, Gain};
 use super::notes::Found;
 use super::settings::Settings;
 use super::shadows::{Job, Receivers};
 use super::sheets::{Sheet, Sheets};
 use super::sources::Source;
 
-/// Position, normal, and for each light T and, where something is glossy, V (§6.2.3), of a
-/// sheet's vertices; and whether any of them has some of a light.
+/// Lights, and what their transport is found with.
+pub(super) struct Lit<'a> {
+    pub(super) sources: &'a [Source],
+    /// Those of [`super::grazing`], or none.
+    pub(super) weights: &'a [f64],
+    pub(super) evaluation: Evaluation,
+    /// Whether something is glossy.
+    pub(super) glossy: bool,
+}
+
+/// What a sheet's vertices have of the lights.
+pub(super) struct Transported {
+    /// Position, normal, and for each light T and, where something is glossy, V (§6.2.3).
+    pub(super) vertices: Arc<VertexBuffer>,
+    /// Whether any vertex has some of a light.
+    pub(super) reached: Vec<bool>,
+    /// What L_s gains, vertex by vertex, where lights have weights.
+    pub(super) gains: Vec<Gain>,
+}
+
+/// Of one sheet.
 pub(super) fn transported(
     sheet: &Sheet<'_, '_>,
     body: &Body<'_>,
-    sources: &[Source],
-    (evaluation, glossy): &(Evaluation, bool),
+    lit: &Lit<'_>,
     found: &mut Found,
-) -> (Arc<VertexBuffer>, Vec<bool>) {
+) -> Transported {
+    let (sources, evaluation) = (lit.sources, &lit.evaluation);
     let directions: Vec<DVec3> = sources
         .iter()
         .map(|s| body.own(s.at.towards_from(DVec3::ZERO)))
         .collect();
     let harmonics = evaluation.towards(&directions);
     let mut reached = vec![false; sources.len()];
-    let mut data = Vec::new();
+    let (mut data, mut gains) = (Vec::new(), Vec::new());
     for &v in &sheet.vertices {
         let (position, normal) = sheet.vertex(v);
         data.extend(position.into_iter().chain(normal));
         let own = coefficients(&sheet.transport, v as usize);
+        let normal = normal_of(sheet.surface, v, sheet.sign.into());
+        let told = !lit.weights.is_empty() && normal != DVec3::ZERO;
+        let facing = told.then(|| Facing::new(body.own(normal), evaluation));
+        let mut gain = Gain::default();
         for (light, at) in harmonics.iter().enumerate() {
-            let [t, seen] = at.of(&own);
+            let [mut t, seen] = at.of(&own);
+            if let Some(facing) = &facing {
+                let (weight, towards) = (lit.weights[light], directions[light]);
+                let [whole, open] = facing.transport(t, weight, towards, at);
+                gain.add(sources[light].energy, whole - t, open);
+                t = whole;
+            }
             found.ringing(t);
-            let seen = if *glossy { seen.clamp(0.0, 1.0) } else { 0.0 };
+            let seen = if lit.glossy {
+                seen.clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
             reached[light] |= t > 0.0 || seen > 0.0;
             data.extend([t.max(0.0) as f32, seen as f32]);
         }
+        if !lit.weights.is_empty() {
+            gains.push(gain);
+        }
     }
     let stride = 6 + 2 * sources.len();
-    (Arc::new(VertexBuffer { data, stride }), reached)
+    Transported {
+        vertices: Arc::new(VertexBuffer { data, stride }),
+        reached,
+        gains,
+    }
 }
 
 /// What each body needs under each light that reaches it.
@@ -50,14 +91,13 @@ pub(super) fn jobs(
     bodies: &[Body<'_>],
     sheets: &Sheets<'_, '_>,
     sources: &[Source],
-    transported: &[(Arc<VertexBuffer>, Vec<bool>)],
+    transported: &[Transported],
     settings: &Settings,
 ) -> Vec<Job> {
     let receivers = Receivers::new(bodies, settings);
     let reaches = |light: usize, body: usize| {
         let own = sheets.all.iter().zip(transported);
-        own.clone()
-            .any(|(s, (_, reached))| s.body == body && reached[light])
+        own.clone().any(|(s, t)| s.body == body && t.reached[light])
     };
     let of_light = |(light, source): (usize, &Source)| {
         receivers.jobs(light, source, settings, |body| reaches(light, body))

@@ -159,7 +159,7 @@ const LEVELS: Param<Option<u32>> = Param::<Option<u32>>::whole_or(
 const SHADES: Param<u32> = Param::whole(
     "shades",
     FULL as u64,
-    [1, FULL as u64],
+    [2, FULL as u64],
     "full light in the buffer, and so the steps of a penumbra: fewer leave room for more \
      overlaps in a buffer of fewer bits (paper I's k)",
 )

@@ -4,13 +4,15 @@
 #   .ci/python.sh [PROGRAM]
 #
 # Results are held against those of PROGRAM, by default target/release/gnomon. Needs Python
-# 3.10 with venv, and packages from PyPI; says so and is skipped where there are none. The
-# release build shares its crates with that of the command line in one target folder.
+# 3.10 with venv, and packages from PyPI; says so and is skipped where there are none. What is
+# built is what users get, a release, in a target folder of its own: crates that a workspace
+# built are none of another one's.
 set -Eeuo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 target=${CARGO_TARGET_DIR:-$PWD/target}
-program=$(realpath "${1:-$target/release/gnomon}")
+program=$(realpath -m "${1:-$target/release/gnomon}")
+export CARGO_TARGET_DIR=$target/python
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -42,15 +44,16 @@ python3 --version
 [[ -x $program ]] || { echo "no program at $program to hold results against" >&2; exit 1; }
 
 cargo fmt --manifest-path python/Cargo.toml --check
-CARGO_TARGET_DIR=$target cargo clippy --locked --release --manifest-path python/Cargo.toml -- -D warnings
+cargo clippy --locked --manifest-path python/Cargo.toml -- -D warnings
 
 began=$SECONDS
-CARGO_TARGET_DIR=$target pip install --quiet --disable-pip-version-check './python[test]'
+pip install --quiet --disable-pip-version-check './python[test]'
 printf 'installed in %d s\n' $((SECONDS - began))
 
 # From elsewhere: what is installed is tested, not the sources.
 cp -r python/tests "$work/tests"
-GNOMON=$program GNOMON_ROOT=$PWD CARGO_TARGET_DIR=$target \
+GNOMON=$program GNOMON_ROOT=$PWD \
   python3 -m pytest -q -c python/pyproject.toml --rootdir "$work" -p no:cacheprovider "$work/tests"
 # The notebook's cells, and the outputs that it shows.
 python3 -m pytest -q -c python/pyproject.toml --rootdir "$PWD" -p no:cacheprovider --nbval docs/python.ipynb
+printf 'Python package passed; %d s\n' "$SECONDS"

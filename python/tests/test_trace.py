@@ -130,6 +130,10 @@ def test_accesses_add_up_to_the_counters(recorded):
     assert count["stencil_write"] == traffic["stencil"]["write_accesses"]
     assert len(accesses) == trace.info()["contents"][0]["events"]
     assert accesses["block"].max(axis=0).tolist() == [11, 7]
+    # Clipping makes a few pieces of a primitive; volumes have many, and show both sides.
+    assert accesses["piece"].max() < 8 < accesses["primitive"].max()
+    assert accesses["front"].any() and not accesses["front"].all()
+    assert not accesses["hiz_killed"].any()
     for number, of in enumerate(frame.passes):
         here = accesses[accesses["pass"] == number]
         assert int(bits(here["covered"]).sum()) == of["fragments"]["generated"]

@@ -66,6 +66,8 @@ pub(crate) fn compare(
     Ok((text, frames, Truth::new(py, reference)?))
 }
 
+/// The same before Python has it.
+type Done = (String, Vec<(Rendered, String)>, Reference);
 type Entry = (&'static dyn Technique, Params);
 
 /// The image that is on the light for all techniques: under another one another truth holds.
@@ -100,7 +102,7 @@ impl Work<'_> {
         entries: &[Entry],
         light: (usize, Option<&LightImage>),
         kind: ReferenceKind,
-    ) -> PyResult<(String, Vec<(Rendered, String)>, Reference)> {
+    ) -> PyResult<Done> {
         let (size, cache) = (self.settings.size, self.cache.as_ref());
         let start = Instant::now();
         let reference = Reference::with_light_image(self.scene, light, size, kind, cache, &|| {});

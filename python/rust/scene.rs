@@ -38,7 +38,7 @@ pub(crate) struct Scene {
 /// Where a scene's other moments are made from.
 #[derive(Clone)]
 enum Origin {
-    Named(SceneSource),
+    Named(Box<SceneSource>),
     Text {
         text: Arc<str>,
         folder: PathBuf,
@@ -48,7 +48,8 @@ enum Origin {
 
 impl Origin {
     fn named(name: &str, outside: Outside) -> Result<Self, SceneError> {
-        SceneSource::open_with(name, outside).map(Self::Named)
+        let source = SceneSource::open_with(name, outside)?;
+        Ok(Self::Named(Box::new(source)))
     }
 
     fn at(self, time: f64) -> Result<Scene, SceneError> {

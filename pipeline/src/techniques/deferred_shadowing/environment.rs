@@ -135,7 +135,7 @@ impl<'f, 'a> Deferred<'f, 'a> {
         let mut found = Found::of(bodies);
         let lit = Lit {
             sources: &sources,
-            weights: &grazing::weights(&sources, settings),
+            remainders: &grazing::remainders(&sources, settings),
             evaluation: Evaluation::new(settings),
             glossy,
         };

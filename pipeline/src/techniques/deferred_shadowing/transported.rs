@@ -7,7 +7,7 @@ use glam::DVec3;
 use gnomon_raster::VertexBuffer;
 
 use super::bodies::{Body, Evaluation, coefficients, normal_of};
-use super::grazing::{Facing, Gain};
+use super::grazing::{Facing, Gain, Remainder};
 use super::notes::Found;
 use super::settings::Settings;
 use super::shadows::{Job, Receivers};
@@ -17,8 +17,8 @@ use super::sources::Source;
 /// Lights, and what their transport is found with.
 pub(super) struct Lit<'a> {
     pub(super) sources: &'a [Source],
-    /// Those of [`super::grazing`], or none.
-    pub(super) weights: &'a [f64],
+    /// What bands leave out towards each, or none.
+    pub(super) remainders: &'a [Remainder],
     pub(super) evaluation: Evaluation,
     /// Whether something is glossy.
     pub(super) glossy: bool,
@@ -30,7 +30,7 @@ pub(super) struct Transported {
     pub(super) vertices: Arc<VertexBuffer>,
     /// Whether any vertex has some of a light.
     pub(super) reached: Vec<bool>,
-    /// What L_s gains, vertex by vertex, where lights have weights.
+    /// What L_s gains, vertex by vertex, where bands leave something out.
     pub(super) gains: Vec<Gain>,
 }
 
@@ -54,16 +54,15 @@ pub(super) fn transported(
         data.extend(position.into_iter().chain(normal));
         let own = coefficients(&sheet.transport, v as usize);
         let normal = normal_of(sheet.surface, v, sheet.sign.into());
-        let told = !lit.weights.is_empty() && normal != DVec3::ZERO;
+        let told = !lit.remainders.is_empty() && normal != DVec3::ZERO;
         let facing = told.then(|| Facing::new(body.own(normal), evaluation));
         let mut gain = Gain::default();
         for (light, at) in harmonics.iter().enumerate() {
             let [mut t, seen] = at.of(&own);
             if let Some(facing) = &facing {
-                let (weight, towards) = (lit.weights[light], directions[light]);
-                let [whole, open] = facing.transport(t, weight, towards, at);
-                gain.add(sources[light].energy, whole - t, open);
-                t = whole;
+                let lacks = facing.lacks(t, directions[light], (&lit.remainders[light], at));
+                gain.add(sources[light].energy, lacks);
+                t += lacks[0];
             }
             found.ringing(t);
             let seen = if lit.glossy {
@@ -74,7 +73,7 @@ pub(super) fn transported(
             reached[light] |= t > 0.0 || seen > 0.0;
             data.extend([t.max(0.0) as f32, seen as f32]);
         }
-        if !lit.weights.is_empty() {
+        if !lit.remainders.is_empty() {
             gains.push(gain);
         }
     }

@@ -22,6 +22,7 @@
 //!
 //! # Features
 //!
+//! * `documents`: results as JSON, as the program prints them. `cli` has it.
 //! * `cli` (default): the program. `run` is all of it, `main_with` the same with techniques
 //!   of other crates, `draw` is for programs that plot what they measured. Libraries and
 //!   tests leave it out with `default-features = false`.
@@ -29,6 +30,8 @@
 #[cfg(feature = "cli")]
 mod command_line;
 pub mod conformance;
+#[cfg(feature = "documents")]
+pub mod documents;
 #[cfg(feature = "cli")]
 pub mod draw;
 #[cfg(feature = "cli")]

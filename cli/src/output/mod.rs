@@ -1,11 +1,9 @@
 //! What leaves the program: files, JSON, tables, progress.
 
 pub(crate) mod csv;
-mod draw_documents;
 pub(crate) mod draws;
 pub(crate) mod files;
 pub(crate) mod html;
-pub(crate) mod json;
 pub(crate) mod npy;
 pub(crate) mod numbers;
 pub(crate) mod pause;

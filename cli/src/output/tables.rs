@@ -4,10 +4,11 @@ use comfy_table::{
     CellAlignment, ContentArrangement, Table as TerminalTable, TableComponent, presets,
 };
 use gnomon_pipeline::measure::render::Rendered;
-use gnomon_raster::{ClientTraffic, Counters, SubmitReport, Traffic};
+use gnomon_raster::{ClientTraffic, Counters, Traffic};
 
 use super::numbers::{count, milliseconds, rough_count};
 use super::wrap::WIDTH;
+pub(crate) use crate::documents::{clears, frame_bytes, frame_counters};
 
 /// A title, named columns, rows of text. The first column is aligned to the
 /// left; a row of a single cell is a heading. Column names may have several lines.
@@ -254,29 +255,6 @@ fn both_ways(traffic: &[Traffic], write: Write) -> String {
         (0, 0) => NOTHING.to_owned(),
         _ => format!("{}/{}", write(read), write(written)),
     }
-}
-
-/// All bytes of a frame, clears included.
-pub(crate) fn frame_bytes(report: &SubmitReport) -> u64 {
-    frame_counters(report).traffic.total_bytes() + clears(report).traffic.total_bytes()
-}
-
-/// Sum of a frame's counters, clears left out.
-pub(crate) fn frame_counters(report: &SubmitReport) -> Counters {
-    let mut sum = Counters::default();
-    report.passes.iter().for_each(|p| sum.add(&p.totals()));
-    sum
-}
-
-/// Counters with the traffic of a frame's clears and nothing else.
-pub(crate) fn clears(report: &SubmitReport) -> Counters {
-    let mut sum = Counters::default();
-    for pass in &report.passes {
-        let mut clear = Counters::default();
-        clear.traffic = pass.clear;
-        sum.add(&clear);
-    }
-    sum
 }
 
 #[cfg(test)]

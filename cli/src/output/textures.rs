@@ -6,6 +6,7 @@ use image::ExtendedColorType::Rgba32F;
 use image::ImageEncoder;
 use image::codecs::openexr::OpenExrEncoder;
 
+use crate::documents::numpy_type;
 use crate::draw::Picture;
 
 /// What of a texture is looked at.
@@ -42,11 +43,15 @@ pub(crate) fn array(texture: &Texture, image: Subresource, of: Aspect) -> Result
     let [width, height, _] = texture.mip_size(image.mip);
     let format = texture.descriptor().format;
     let (kind, channels, bytes) = match of {
-        Aspect::Color => (kind(format), format.channels(), texture.read_packed(image)?),
+        Aspect::Color => (
+            numpy_type(format),
+            format.channels(),
+            texture.read_packed(image)?,
+        ),
         Aspect::Depth => {
             let depths = texture.read_depth_bits(image)?;
             let bytes = depths.iter().flat_map(|d| d.to_le_bytes());
-            (kind(format), 1, bytes.collect())
+            (numpy_type(format), 1, bytes.collect())
         }
         Aspect::Stencil => ("|u1", 1, texture.read_stencil(image)?),
     };
@@ -56,17 +61,6 @@ pub(crate) fn array(texture: &Texture, image: Subresource, of: Aspect) -> Result
         channels,
         bytes,
     })
-}
-
-/// NumPy's name of what a channel is stored as.
-fn kind(format: Format) -> &'static str {
-    match format {
-        Format::R8Unorm | Format::Rg8Unorm | Format::Rgba8Unorm => "|u1",
-        Format::R16Sint => "<i2",
-        Format::R16Float | Format::Rgba16Float => "<f2",
-        Format::R32Float | Format::Rgba32Float | Format::Depth32FloatStencil8 => "<f4",
-        Format::R32Uint | Format::Depth24Stencil8 => "<u4",
-    }
 }
 
 /// What an image means: floats, integers, 8-bit channels as they are stored.

@@ -7,7 +7,7 @@ use super::exact::Exact;
 use super::front::{Cost, along, points};
 use super::results::{Group, Results, Row};
 use super::stored::{Cell, Found, Measured, Outcome, Time};
-use crate::output::json::Object;
+use crate::documents::Object;
 
 #[derive(Serialize)]
 pub(super) struct BenchDocument<'a> {

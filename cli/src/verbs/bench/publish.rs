@@ -4,10 +4,10 @@ use super::document::BenchDocument;
 use super::results::Results;
 use super::store::Store;
 use super::{charts, csv, page};
+use crate::documents::FileDocument;
 use crate::draw::plot;
 use crate::error::CliError;
 use crate::output::files::Batch;
-use crate::output::json::FileDocument;
 use crate::output::png;
 
 /// What is written: its kind, its name, its bytes.

@@ -3,7 +3,7 @@
 use super::advice::{self, LIMITS};
 use super::front::{Cost, along, points};
 use super::results::{Group, Results};
-use crate::output::json::FileDocument;
+use crate::documents::FileDocument;
 use crate::output::numbers::{self, error};
 use crate::output::tables::Table;
 use crate::output::wrap::hanging;

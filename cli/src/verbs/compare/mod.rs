@@ -3,7 +3,6 @@
 mod against;
 mod args;
 mod csv;
-mod document;
 mod environment;
 mod job;
 mod measure;

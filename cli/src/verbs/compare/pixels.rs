@@ -1,8 +1,7 @@
-//! How many pixels were compared, and why others were not: for tables and JSON.
+//! How many pixels were compared, and why others were not.
 
 use gnomon_pipeline::measure::comparison::{LeftOut, PixelCounts};
 
-use crate::output::json::Object;
 use crate::output::numbers::count;
 
 /// Rows of a table with a column for each of `counts`. Reasons without pixels have
@@ -23,12 +22,6 @@ pub(super) fn tabulate(counts: &[PixelCounts]) -> Vec<Vec<String>> {
         }
     }
     rows
-}
-
-/// Keys and numbers of pixels.
-pub(super) fn count_by_reason(counts: &PixelCounts) -> Object<usize> {
-    let reasons = counts.left_out.reasons();
-    Object(reasons.map(|r| (r.key.to_owned(), r.pixels)).to_vec())
 }
 
 #[cfg(test)]

@@ -3,13 +3,14 @@
 use gnomon_pipeline::techniques::Registry;
 
 use super::args::CompareArgs;
-use super::document::CompareDocument;
 use super::job::CompareJob;
 use super::measure::{self, Comparison, Measured};
 use super::{against, csv, environment, picture, table};
+use crate::documents::{
+    CompareDocument, CompareInputs, FileDocument, ResultDocument, worker_threads,
+};
 use crate::error::CliError;
 use crate::output::files::Batch;
-use crate::output::json::{FileDocument, worker_threads};
 use crate::output::pause::Pause;
 use crate::output::png_text::{About, software, with_text};
 use crate::output::progress::Progress;
@@ -53,7 +54,7 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
         output::write_stdout(table.as_bytes())?;
     }
     if args.json {
-        output::print_json(&CompareDocument::new(&job, &found, &files))?;
+        output::print_json(&document(&job, &found, files.clone()))?;
     }
     let is_taken = args.json || to_stdout.is_some();
     output::print_summary(&summarise(&job, &found, &files), is_taken)
@@ -65,6 +66,22 @@ fn write_picture(job: &CompareJob, found: &Comparison) -> Result<(), CliError> {
     let picture = png::encode(&picture::draw(job, found));
     batch.stage(&job.out, &with_text(&picture, &about(job, found)))?;
     batch.commit()
+}
+
+fn document<'a>(
+    job: &'a CompareJob,
+    found: &Comparison,
+    files: Vec<FileDocument>,
+) -> CompareDocument<'a> {
+    let inputs = CompareInputs {
+        scene: &job.scene,
+        settings: job.settings,
+        reference_ms: found.reference_ms,
+    };
+    let results = job.entries.iter().zip(&found.measured);
+    let results =
+        results.map(|(e, m)| ResultDocument::new(e.technique, &e.params, &m.done, &m.score));
+    CompareDocument::new(inputs, &found.reference, results.collect(), files)
 }
 
 /// What the picture says of itself.

@@ -6,9 +6,9 @@ use gnomon_pipeline::techniques::find;
 use gnomon_pipeline::world::scene::Scene;
 
 use super::args::DemoArgs;
+use crate::documents::RenderInputs;
 use crate::error::CliError;
 use crate::flags::parameters;
-use crate::output::json::RenderInputs;
 use crate::output::progress::Progress;
 
 /// Frames timed for each entry.

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::inputs::Inputs;
 use super::run::Differences;
 use super::text::shown;
-use crate::verbs::pixel::PixelDocument;
+use crate::documents::PixelDocument;
 
 /// What `gnomon diff --json` prints.
 #[derive(Serialize)]

@@ -6,10 +6,10 @@ use gnomon_pipeline::world::export::{ExportFormat, export};
 use serde::Serialize;
 
 use super::args::ExportArgs;
+use crate::documents::FileDocument;
 use crate::error::CliError;
 use crate::flags::DEFAULT_SIZE;
 use crate::output::files::{Batch, check_folder};
-use crate::output::json::FileDocument;
 use crate::output::{self};
 use crate::verbs;
 

@@ -1,7 +1,7 @@
 //! Says what is in a trace.
 
 use super::args::InfoArgs;
-use super::document::TraceDocument;
+use crate::documents::TraceDocument;
 use crate::error::CliError;
 use crate::output::{self, numbers};
 use crate::traces_of_frames::TraceFile;
@@ -21,7 +21,7 @@ fn text(d: &TraceDocument) -> String {
     let mut text = format!(
         "{}: {}, {}\nid {}\nby {}: {} {} {w}x{h}\n",
         d.file,
-        d.contents(),
+        contents(d),
         numbers::bytes(d.bytes),
         d.id,
         d.meta.producer,
@@ -46,4 +46,23 @@ fn text(d: &TraceDocument) -> String {
         text += &format!("warning: {lost}\n");
     }
     text
+}
+
+/// Numbers of frames, passes, draws and events.
+pub(crate) fn contents(document: &TraceDocument) -> String {
+    let frames = &document.contents;
+    let passes = frames.iter().flat_map(|f| &f.passes);
+    let draws: usize = passes.clone().map(|p| p.draws).sum();
+    let events: Option<u64> = frames.iter().map(|f| f.events).sum();
+    let events = match events {
+        Some(n) => format!(", {} events", numbers::count(n)),
+        None => ", no traffic".to_owned(),
+    };
+    format!(
+        "{} frame{}, {} passes, {} draws{events}",
+        frames.len(),
+        if frames.len() == 1 { "" } else { "s" },
+        numbers::count(passes.count() as u64),
+        numbers::count(draws as u64),
+    )
 }

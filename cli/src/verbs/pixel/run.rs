@@ -4,8 +4,8 @@ use gnomon_raster::{GpuConfig, Recording};
 use gnomon_traces::history::{self, History, HistoryOptions};
 
 use super::args::{PixelArgs, PlaceArgs};
-use super::document::PixelDocument;
 use super::text::text;
+use crate::documents::PixelDocument;
 use crate::error::CliError;
 use crate::output;
 use crate::traces_of_frames::TraceFile;

@@ -4,8 +4,8 @@ use gnomon_raster::state::{CompareFunction, StencilOperation};
 use gnomon_raster::{Format, FragmentEnd, LoadOp, StoreOp};
 use gnomon_traces::history::{Change, EventKind, FragmentEvent, History, PixelEvent, Value};
 
-use super::document::end_name;
-use super::words::{operation, sign, stored};
+use super::words::stored;
+use crate::documents::{end_name, operation, sign};
 use crate::output::tables::Table;
 
 /// One row an event, then what the pixel holds.

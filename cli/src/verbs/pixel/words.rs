@@ -1,35 +1,6 @@
-//! Stored values and state in words and signs.
+//! Stored values in words.
 
-use gnomon_raster::state::{CompareFunction, StencilOperation};
 use gnomon_raster::{Format, format};
-
-/// The sign of a comparison of what comes with what is stored.
-pub(super) fn sign(f: CompareFunction) -> &'static str {
-    match f {
-        CompareFunction::Never => "never",
-        CompareFunction::Less => "<",
-        CompareFunction::Equal => "=",
-        CompareFunction::LessEqual => "≤",
-        CompareFunction::Greater => ">",
-        CompareFunction::NotEqual => "≠",
-        CompareFunction::GreaterEqual => "≥",
-        CompareFunction::Always => "always",
-    }
-}
-
-/// What a stencil operation does.
-pub(super) fn operation(op: StencilOperation) -> &'static str {
-    match op {
-        StencilOperation::Keep => "keep",
-        StencilOperation::Zero => "zero",
-        StencilOperation::Replace => "replace",
-        StencilOperation::IncrementClamp => "+1 clamped",
-        StencilOperation::DecrementClamp => "-1 clamped",
-        StencilOperation::Invert => "invert",
-        StencilOperation::IncrementWrap => "+1",
-        StencilOperation::DecrementWrap => "-1",
-    }
-}
 
 /// A float as short as it can be told exactly; NaN and infinities by name.
 pub(crate) fn float(bits: u32) -> String {

@@ -6,11 +6,12 @@ use gnomon_pipeline::world::scene::{Scene, SceneSource};
 use gnomon_traces::{Meta, RecordOptions, Recorder, Trace};
 
 use super::args::RecordArgs;
+use crate::documents::TraceDocument;
 use crate::error::CliError;
 use crate::output::files::{Batch, check_extension};
 use crate::output::progress::Progress;
 use crate::output::{self, numbers, warnings};
-use crate::verbs::info::TraceDocument;
+use crate::verbs::info::contents;
 
 /// Records what was asked for; the file appears whole or not at all.
 pub(crate) fn run(args: &RecordArgs, registry: &Registry) -> Result<(), CliError> {
@@ -90,7 +91,7 @@ fn summarise(args: &RecordArgs, document: &TraceDocument) -> String {
     format!(
         "{}  {}  {}  id {}  {}\n",
         args.out.display(),
-        document.contents(),
+        contents(document),
         numbers::bytes(document.bytes),
         document.id,
         if args.frozen { "frozen" } else { "live" },

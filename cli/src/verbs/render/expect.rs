@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use gnomon_pipeline::world::files;
 use serde_json::Value;
 
+use crate::documents::RenderDocument;
 use crate::error::CliError;
-use crate::output::json::RenderDocument;
 
 /// Bytes of a document that are read at most.
 const MOST: u64 = 64 << 20;

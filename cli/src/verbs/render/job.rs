@@ -9,8 +9,8 @@ use gnomon_pipeline::world::scene::Scene;
 use gnomon_raster::MAX_TEXTURE_SIZE;
 
 use super::args::{Per, RenderArgs};
+use crate::documents::{FileDocument, RenderDocument, RenderInputs};
 use crate::error::CliError;
-use crate::output::json::{FileDocument, RenderDocument, RenderInputs};
 use crate::output::{files, is_stdout};
 use crate::overlay::{Explained, OverlayKind};
 use crate::verbs;

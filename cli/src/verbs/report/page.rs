@@ -5,9 +5,9 @@ use std::path::Path;
 use gnomon_raster::GpuConfig;
 
 use super::measure::Subject;
+use crate::documents::worker_threads;
 use crate::output::html::scatter::{Point, Scatter};
 use crate::output::html::{bars, draws, frame, history, maps, page};
-use crate::output::json::worker_threads;
 use crate::output::tables::Table;
 use crate::output::{png, shell};
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::run::Outcome;
 use super::text;
-use crate::output::json::{FileDocument, worker_threads};
+use crate::documents::{FileDocument, worker_threads};
 
 #[derive(Serialize)]
 pub(super) struct ReproduceDocument<'a> {

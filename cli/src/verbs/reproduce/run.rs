@@ -10,10 +10,10 @@ use gnomon_pipeline::truth::oracle::cache::OracleCache;
 use super::args::ReproduceArgs;
 use super::document::ReproduceDocument;
 use super::text;
+use crate::documents::FileDocument;
 use crate::draw::plot;
 use crate::error::CliError;
 use crate::output::files::{self, Batch};
-use crate::output::json::FileDocument;
 use crate::output::progress::Progress;
 use crate::output::{self, png};
 

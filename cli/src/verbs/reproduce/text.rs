@@ -5,7 +5,7 @@ use std::time::Duration;
 use gnomon_claims::{Finding, Judgement, LabSettings, Lines, Measure, Theirs, Unit, Verdict};
 
 use super::run::Outcome;
-use crate::output::json::worker_threads;
+use crate::documents::worker_threads;
 use crate::output::numbers;
 use crate::output::wrap::hanging;
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::args::StressArgs;
 use super::job::StressJob;
-use crate::output::json::FileDocument;
+use crate::documents::FileDocument;
 
 #[derive(Clone, Serialize)]
 pub(super) struct StressDocument {

@@ -7,11 +7,11 @@ use super::args::StressArgs;
 use super::document::StressDocument;
 use super::job::StressJob;
 use super::{charts, csv, record, text};
+use crate::documents::FileDocument;
 use crate::draw::plot;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::Batch;
-use crate::output::json::FileDocument;
 use crate::output::progress::Progress;
 
 /// Measures, writes the files, and prints the verdicts.

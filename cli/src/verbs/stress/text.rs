@@ -3,7 +3,7 @@
 use gnomon_pipeline::measure::stress::{Curve, End, Verdict};
 
 use super::args::StressArgs;
-use crate::output::json::FileDocument;
+use crate::documents::FileDocument;
 use crate::output::wrap::hanging;
 
 /// By technique, what it bears, and where it ends.

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+
+use crate::documents::By;
 
 /// Flags of `traffic`.
 #[derive(Debug, Args)]
@@ -33,31 +35,4 @@ pub(crate) struct TrafficArgs {
     /// Print one JSON document on stdout
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-/// What traffic is added up by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum By {
-    /// Render passes
-    Pass,
-    /// Draws, and what passes do outside of them
-    Draw,
-    /// Clients of the memory
-    Client,
-    /// Blocks of 8x8 pixels of the picture
-    Tile,
-    /// Pixels of the picture
-    Pixel,
-}
-
-impl By {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Draw => "draw",
-            Self::Client => "client",
-            Self::Tile => "tile",
-            Self::Pixel => "pixel",
-        }
-    }
 }

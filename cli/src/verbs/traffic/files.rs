@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use gnomon_traces::profile::{Client, Levels, Traffic};
+use gnomon_traces::profile::Traffic;
 
-use super::args::By;
-use super::document::TrafficDocument;
+use crate::documents::{By, TrafficDocument, dram_bytes};
 use crate::error::CliError;
 use crate::output::csv::cell;
 use crate::output::{files, npy};
@@ -64,21 +63,10 @@ pub(super) fn csv(documents: &[TrafficDocument]) -> String {
 
 /// dram bytes in both directions of all clients.
 pub(super) fn array(traffic: &Traffic, by: By) -> Vec<u8> {
-    let bytes = |l: &Levels| l.dram.bytes() as f32;
-    if by == By::Pixel {
-        let pixels = traffic
-            .pixels()
-            .map(|(pixels, _)| pixels)
-            .unwrap_or_default();
-        let values: Vec<f32> = pixels.iter().map(bytes).collect();
-        return npy::encode(traffic.size, &values);
-    }
-    let tiles = (traffic.grid[0] * traffic.grid[1]) as usize;
-    let mut sums = vec![Levels::default(); tiles];
-    for client in Client::all() {
-        let cells = traffic.cells(client).iter();
-        sums.iter_mut().zip(cells).for_each(|(sum, l)| sum.add(l));
-    }
-    let values: Vec<f32> = sums.iter().map(bytes).collect();
-    npy::encode(traffic.grid, &values)
+    let place = match by {
+        By::Pixel => traffic.size,
+        _ => traffic.grid,
+    };
+    let values: Vec<f32> = dram_bytes(traffic, by).iter().map(|n| *n as f32).collect();
+    npy::encode(place, &values)
 }

@@ -2,7 +2,6 @@
 //! drawn, and no shader is needed.
 
 mod args;
-mod document;
 mod files;
 mod run;
 mod table;

@@ -8,10 +8,10 @@ use gnomon_traces::judged::MERGED;
 use gnomon_traces::profile::{Judge, JudgeOptions, Order, Profile, ProfileError, profile};
 use gnomon_traces::profile::{PROFILES, Traffic};
 
-use super::args::{By, TrafficArgs};
-use super::document::TrafficDocument;
+use super::args::TrafficArgs;
 use super::files::{Kind, array, csv, kind};
 use super::table;
+use crate::documents::{By, TrafficDocument};
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::Batch;

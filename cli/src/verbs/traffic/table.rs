@@ -2,7 +2,7 @@
 
 use gnomon_traces::profile::Levels;
 
-use super::document::TrafficDocument;
+use crate::documents::TrafficDocument;
 use crate::output::numbers::bytes;
 use crate::output::tables::Table;
 

@@ -3,11 +3,12 @@
 use gnomon_traces::{Keep, trim};
 
 use super::args::TrimArgs;
+use crate::documents::TraceDocument;
 use crate::error::CliError;
 use crate::output;
 use crate::output::files::{Batch, check_extension};
 use crate::traces_of_frames::TraceFile;
-use crate::verbs::info::TraceDocument;
+use crate::verbs::info::contents;
 
 /// Writes the trace that is asked for, or nothing.
 pub(crate) fn run(args: &TrimArgs) -> Result<(), CliError> {
@@ -34,6 +35,6 @@ pub(crate) fn run(args: &TrimArgs) -> Result<(), CliError> {
     output::print(&format!(
         "{}: {}, all that is kept is what it was",
         args.out.display(),
-        document.contents()
+        contents(&document)
     ))
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::job::TuneJob;
 use super::search::{Found, Tried};
-use crate::output::json::{Object, worker_threads};
+use crate::documents::{Object, worker_threads};
 use crate::output::shell;
 
 #[derive(Serialize)]

@@ -72,6 +72,7 @@ pub struct ObjError {
     /// Name of the `o` or `g` in force there.
     pub object: Option<String>,
     /// What is wrong.
+    #[source]
     pub problem: ObjProblem,
 }
 

@@ -5,10 +5,9 @@ use serde::Serialize;
 
 use super::super::args::CompareArgs;
 use super::super::job::CompareJob;
-use super::super::pixels::count_by_reason;
 use super::read::Theirs;
 use super::score::{Found, STEP, Worst};
-use crate::output::json::{FileDocument, Object};
+use crate::documents::{FileDocument, Object, count_by_reason};
 use crate::output::numbers::{count, error};
 
 #[derive(Serialize)]

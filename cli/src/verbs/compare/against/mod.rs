@@ -13,9 +13,9 @@ use gnomon_pipeline::truth::oracle::area::VisibilityImage;
 
 use super::args::CompareArgs;
 use super::job::CompareJob;
+use crate::documents::FileDocument;
 use crate::error::CliError;
 use crate::output::files::Batch;
-use crate::output::json::FileDocument;
 use crate::output::progress::Progress;
 use crate::output::{self, png};
 use read::{Content, Theirs};

@@ -4,9 +4,10 @@
 use serde::Serialize;
 
 use super::{EnvironmentJob, MeasuredLight, residual_share};
-use crate::output::json::{FileDocument, Hashes, Object, WarningDocument, worker_threads};
+use crate::documents::{
+    FileDocument, Hashes, Object, WarningDocument, count_by_reason, worker_threads,
+};
 use crate::output::tables;
-use crate::verbs::compare::pixels::count_by_reason;
 
 #[derive(Serialize)]
 pub(super) struct EnvironmentDocument<'a> {

@@ -13,6 +13,7 @@ pub struct GltfError {
     /// Place in the JSON, such as `meshes[0].primitives[1]`; empty for the whole file.
     pub place: String,
     /// What is wrong.
+    #[source]
     pub problem: GltfProblem,
 }
 

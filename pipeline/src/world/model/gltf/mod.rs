@@ -50,7 +50,7 @@ pub const MAX_GLTF_BYTES: u64 = 256 << 20;
 
 /// Bytes `{` and `,` of the JSON at most: as many tables and elements of lists there are, and
 /// a table of three bytes takes hundreds.
-const MAX_JSON: usize = 1 << 22;
+const MAX_JSON: usize = 1 << 21;
 
 /// Extensions that a file may require.
 pub const SUPPORTED: [&str; 4] = [

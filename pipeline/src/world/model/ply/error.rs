@@ -11,6 +11,7 @@ pub struct PlyError {
     /// File as given by the caller.
     pub file: String,
     /// What is wrong, with its place.
+    #[source]
     pub problem: PlyProblem,
 }
 

@@ -1,12 +1,11 @@
-//! Traffic as rows, for JSON, CSV and tables.
+//! Traffic as rows, for JSON, CSV and tables; of places as arrays.
 
 use gnomon_traces::profile::{Client, Levels, PassMerge, Traffic, TrafficRow};
 use serde::Serialize;
 
-use super::args::By;
-
+/// What a profile makes of a recorded frame.
 #[derive(Serialize)]
-pub(crate) struct TrafficDocument {
+pub struct TrafficDocument {
     pub(crate) trace: String,
     pub(crate) profile: String,
     pub(crate) by: &'static str,
@@ -17,6 +16,66 @@ pub(crate) struct TrafficDocument {
     pub(crate) merges: Option<Vec<MergeDocument>>,
     pub(crate) rows: Vec<RowDocument>,
     pub(crate) totals: Levels,
+}
+
+/// What traffic is added up by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum By {
+    /// Render passes
+    Pass,
+    /// Draws, and what passes do outside of them
+    Draw,
+    /// Clients of the memory
+    Client,
+    /// Blocks of 8x8 pixels of the picture
+    Tile,
+    /// Pixels of the picture
+    Pixel,
+}
+
+impl By {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Pass,
+        Self::Draw,
+        Self::Client,
+        Self::Tile,
+        Self::Pixel,
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Draw => "draw",
+            Self::Client => "client",
+            Self::Tile => "tile",
+            Self::Pixel => "pixel",
+        }
+    }
+}
+
+/// dram bytes in both directions of all clients, by tile or by pixel, row by row; empty
+/// where `by` is no place, or pixels were not judged.
+pub fn dram_bytes(traffic: &Traffic, by: By) -> Vec<u64> {
+    match by {
+        By::Pixel => {
+            let pixels = traffic.pixels().map(|(pixels, _)| pixels);
+            let pixels = pixels.unwrap_or_default();
+            pixels.iter().map(|l| l.dram.bytes()).collect()
+        }
+        By::Tile => {
+            let [columns, rows] = traffic.grid;
+            let mut sums = vec![0; (columns * rows) as usize];
+            for client in Client::all() {
+                let cells = traffic.cells(client).iter();
+                (sums.iter_mut().zip(cells)).for_each(|(sum, l)| *sum += l.dram.bytes());
+            }
+            sums
+        }
+        By::Pass | By::Draw | By::Client => Vec::new(),
+    }
 }
 
 #[derive(Serialize)]
@@ -41,8 +100,8 @@ pub(crate) struct HizDocument {
 }
 
 impl TrafficDocument {
-    /// `merged`: passes were allowed to go on in the tiles of those before.
-    pub(crate) fn new(trace: &str, traffic: &Traffic, by: By, merged: bool) -> Self {
+    /// Of the file called `trace`. `merged`: passes were allowed to go on in the tiles of those before.
+    pub fn new(trace: &str, traffic: &Traffic, by: By, merged: bool) -> Self {
         Self {
             trace: trace.to_owned(),
             profile: traffic.profile.clone(),

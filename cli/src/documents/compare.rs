@@ -1,19 +1,20 @@
-//! The JSON document; `docs/json.md` describes it. Keys are only ever added.
+//! Techniques beside the truth, as JSON.
 
+use gnomon_pipeline::measure::comparison::{PixelCounts, Reference, Score};
+use gnomon_pipeline::measure::render::{RenderSettings, Rendered};
+use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::truth::metrics::visibility::ErrorSummary;
 use gnomon_pipeline::truth::oracle::area::LightRegion;
+use gnomon_pipeline::world::scene::Scene;
 use serde::Serialize;
 
-use super::job::{CompareJob, Entry};
-use super::measure::{Comparison, Measured};
-use super::pixels::count_by_reason;
-use crate::output::json::{
-    FileDocument, Hashes, Object, WarningDocument, WedgeWorkDocument, worker_threads,
-};
-use crate::output::tables;
+use super::object::Object;
+use super::render::{FileDocument, Hashes, WarningDocument, WedgeWorkDocument, worker_threads};
+use super::sums;
 
+/// Techniques beside the truth about one light.
 #[derive(Serialize)]
-pub(super) struct CompareDocument<'a> {
+pub struct CompareDocument<'a> {
     scene: &'a str,
     light: usize,
     size: [u32; 2],
@@ -31,12 +32,52 @@ pub(super) struct CompareDocument<'a> {
     repeat: u32,
     results: Vec<ResultDocument>,
     warnings: Vec<String>,
-    files: &'a [FileDocument],
+    files: Vec<FileDocument>,
 }
 
-/// One technique; figures without pixels are `null`.
+/// What was compared, and how.
+#[derive(Clone, Copy)]
+pub struct CompareInputs<'a> {
+    /// What was drawn.
+    pub scene: &'a Scene,
+    /// Size, and how it was executed.
+    pub settings: RenderSettings,
+    /// What the truth took in milliseconds; `None` where it was read.
+    pub reference_ms: Option<f64>,
+}
+
+impl<'a> CompareDocument<'a> {
+    /// The `results` of techniques beside `reference`, and the files that were written.
+    pub fn new(
+        inputs: CompareInputs<'a>,
+        reference: &Reference,
+        results: Vec<ResultDocument>,
+        files: Vec<FileDocument>,
+    ) -> Self {
+        let settings = inputs.settings;
+        Self {
+            scene: &inputs.scene.name,
+            light: reference.light,
+            size: settings.size,
+            reference: reference.kind.name(),
+            soft: reference.is_soft,
+            cached: inputs.reference_ms.is_none(),
+            reference_ms: inputs.reference_ms,
+            threads: worker_threads(settings.gpu.threads),
+            tile: settings.gpu.tile,
+            simd: settings.gpu.simd.name(),
+            skip: settings.gpu.skip,
+            repeat: settings.repeat,
+            results,
+            warnings: reference.warnings.iter().map(|w| w.to_string()).collect(),
+            files,
+        }
+    }
+}
+
+/// How far a technique is from the truth; figures without pixels are `null`.
 #[derive(Serialize)]
-struct ResultDocument {
+pub struct ResultDocument {
     technique: &'static str,
     params: Object<String>,
     rmse: Option<f64>,
@@ -82,33 +123,10 @@ struct PixelDocument {
     left_out: Object<usize>,
 }
 
-impl<'a> CompareDocument<'a> {
-    pub(super) fn new(job: &'a CompareJob, found: &Comparison, files: &'a [FileDocument]) -> Self {
-        let (settings, reference) = (&job.settings, &found.reference);
-        let results = job.entries.iter().zip(&found.measured);
-        Self {
-            scene: &job.scene.name,
-            light: job.light,
-            size: settings.size,
-            reference: reference.kind.name(),
-            soft: reference.is_soft,
-            cached: found.reference_ms.is_none(),
-            reference_ms: found.reference_ms,
-            threads: worker_threads(settings.gpu.threads),
-            tile: settings.gpu.tile,
-            simd: settings.gpu.simd.name(),
-            skip: settings.gpu.skip,
-            repeat: settings.repeat,
-            results: results.map(|(e, m)| ResultDocument::new(e, m)).collect(),
-            warnings: reference.warnings.iter().map(|w| w.to_string()).collect(),
-            files,
-        }
-    }
-}
-
 impl ResultDocument {
-    fn new(entry: &Entry, Measured { done, score, .. }: &Measured) -> Self {
-        let params = entry.params.iter();
+    /// What `technique` left, and how it was judged.
+    pub fn new(technique: &dyn Technique, params: &Params, done: &Rendered, score: &Score) -> Self {
+        let params = params.iter();
         let all = |figure: fn(ErrorSummary) -> f64| score.visibility.all.map(figure);
         let region = |r| score.visibility.of_region(r);
         let rmse = |r| region(r).map(|e: ErrorSummary| e.rmse);
@@ -116,7 +134,7 @@ impl ResultDocument {
         let [umbra, penumbra, lit] = LightRegion::ALL;
         let b = &score.banding;
         Self {
-            technique: entry.technique.name(),
+            technique: technique.name(),
             params: Object(params.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()),
             rmse: all(|e| e.rmse),
             max: all(|e| e.max),
@@ -136,8 +154,8 @@ impl ResultDocument {
             ssim: score.ssim,
             flip: score.flip,
             time_ms: done.frame_ms,
-            bytes: tables::frame_bytes(&done.report),
-            shaded_fragments: tables::frame_counters(&done.report).fragment_shader_invocations,
+            bytes: sums::frame_bytes(&done.report),
+            shaded_fragments: sums::frame_counters(&done.report).fragment_shader_invocations,
             wedge_work: WedgeWorkDocument::of(done),
             pixels: PixelDocument {
                 compared: score.pixels.compared,
@@ -152,4 +170,10 @@ impl ResultDocument {
             warnings: done.warnings.iter().map(WarningDocument::new).collect(),
         }
     }
+}
+
+/// Keys and numbers of pixels.
+pub(crate) fn count_by_reason(counts: &PixelCounts) -> Object<usize> {
+    let reasons = counts.left_out.reasons();
+    Object(reasons.map(|r| (r.key.to_owned(), r.pixels)).to_vec())
 }

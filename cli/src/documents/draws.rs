@@ -3,14 +3,14 @@
 use gnomon_raster::{DrawReport, SubmitReport};
 use serde::Serialize;
 
-use super::json::{
-    EventDocument, FragmentDocument, Object, PrimitiveDocument, TileDocument, TrafficDocument,
-    traffic,
+use super::object::Object;
+use super::render::{
+    EventDocument, FragmentDocument, PrimitiveDocument, TileDocument, TrafficDocument, traffic,
 };
 
 /// A draw and what it counted.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct DrawDocument {
+pub(super) struct DrawDocument {
     /// Number of its pass in the frame.
     pass: usize,
     pass_name: String,

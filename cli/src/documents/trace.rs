@@ -1,14 +1,13 @@
-//! What `info` and `record` say of a trace, as JSON.
+//! What is in a trace, as JSON.
 
 use std::path::Path;
 
 use gnomon_traces::{Meta, Trace, TraceError};
 use serde::Serialize;
 
-use crate::output::numbers;
-
+/// What a trace says of itself, and what is in it.
 #[derive(Serialize)]
-pub(crate) struct TraceDocument {
+pub struct TraceDocument {
     pub(crate) file: String,
     pub(crate) bytes: u64,
     pub(crate) id: String,
@@ -46,7 +45,11 @@ pub(crate) struct SectionDocument {
 }
 
 impl TraceDocument {
-    pub(crate) fn new(path: &Path, trace: &Trace) -> Result<Self, TraceError> {
+    /// Of `trace`, which is the file at `path`.
+    ///
+    /// # Errors
+    /// A section cannot be read.
+    pub fn new(path: &Path, trace: &Trace) -> Result<Self, TraceError> {
         let mut contents = Vec::new();
         for frame in 0..trace.frames() {
             match FrameDocument::new(trace, frame) {
@@ -73,25 +76,6 @@ impl TraceDocument {
             contents,
             sections: sections.collect(),
         })
-    }
-
-    /// Numbers of frames, passes, draws and events.
-    pub(crate) fn contents(&self) -> String {
-        let frames = &self.contents;
-        let passes = frames.iter().flat_map(|f| &f.passes);
-        let draws: usize = passes.clone().map(|p| p.draws).sum();
-        let events: Option<u64> = frames.iter().map(|f| f.events).sum();
-        let events = match events {
-            Some(n) => format!(", {} events", numbers::count(n)),
-            None => ", no traffic".to_owned(),
-        };
-        format!(
-            "{} frame{}, {} passes, {} draws{events}",
-            frames.len(),
-            if frames.len() == 1 { "" } else { "s" },
-            numbers::count(passes.count() as u64),
-            numbers::count(draws as u64),
-        )
     }
 }
 

@@ -1,4 +1,4 @@
-//! The JSON documents; `docs/json.md` describes them. Keys are only ever added.
+//! A rendered frame as JSON.
 
 use gnomon_pipeline::measure::render::Rendered;
 use gnomon_pipeline::measure::wedge_work::WedgeWork;
@@ -7,29 +7,15 @@ use gnomon_raster::{
     ClientTraffic, Counters, FragmentCounters, GpuConfig, PassReport, SubmitReport, TileCounters,
     Traffic,
 };
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use super::draw_documents::{DrawDocument, draw_documents};
-use super::tables;
-
-/// A JSON object whose keys keep their order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Object<T>(pub(crate) Vec<(String, T)>);
-
-impl<T: Serialize> Serialize for Object<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (key, value) in &self.0 {
-            map.serialize_entry(key, value)?;
-        }
-        map.end()
-    }
-}
+use super::draws::{DrawDocument, draw_documents};
+use super::object::Object;
+use super::sums;
 
 /// The document of `render`, and of each render of `demo`.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct RenderDocument {
+pub struct RenderDocument {
     scene: String,
     technique: &'static str,
     params: Object<String>,
@@ -60,33 +46,40 @@ pub(crate) struct RenderDocument {
 
 /// What the scene and flags say about a render.
 #[derive(Clone, Copy)]
-pub(crate) struct RenderInputs<'a> {
-    pub(crate) scene: &'a gnomon_pipeline::world::scene::Scene,
-    pub(crate) technique: &'static dyn Technique,
-    pub(crate) params: &'a Params,
-    pub(crate) gpu: GpuConfig,
-    pub(crate) repeat: u32,
-    pub(crate) supersample: u32,
+pub struct RenderInputs<'a> {
+    /// What was drawn.
+    pub scene: &'a gnomon_pipeline::world::scene::Scene,
+    /// By which technique.
+    pub technique: &'static dyn Technique,
+    /// Its parameters.
+    pub params: &'a Params,
+    /// How it was executed.
+    pub gpu: GpuConfig,
+    /// Frames that were timed.
+    pub repeat: u32,
+    /// Samples along a pixel's side.
+    pub supersample: u32,
 }
 
 /// A file that was written.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct FileDocument {
+pub struct FileDocument {
     /// `render`, `visibility`, `report`, or the overlay's name.
-    pub(crate) kind: &'static str,
+    pub kind: &'static str,
     /// Where it is.
-    pub(crate) path: String,
+    pub path: String,
 }
 
 /// Hashes of what a frame leaves behind.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Hashes {
+pub struct Hashes {
     color: String,
     visibility: String,
 }
 
 impl Hashes {
-    pub(crate) fn of(done: &Rendered) -> Self {
+    /// Those of `done`.
+    pub fn of(done: &Rendered) -> Self {
         Self {
             color: done.color_hash(),
             visibility: done.visibility_hash(),
@@ -176,7 +169,7 @@ pub(crate) struct TrafficDocument {
 
 /// How much of the penumbra shader's work was in penumbrae.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct WedgeWorkDocument {
+pub struct WedgeWorkDocument {
     shaded: u64,
     covering: u64,
     /// `null` where nothing is covered.
@@ -184,7 +177,8 @@ pub(crate) struct WedgeWorkDocument {
 }
 
 impl WedgeWorkDocument {
-    pub(crate) fn of(done: &Rendered) -> Option<Self> {
+    /// That of `done`; `None` where no coverage of wedges is added.
+    pub fn of(done: &Rendered) -> Option<Self> {
         WedgeWork::of(&done.report, &done.roles).map(|work| Self {
             shaded: work.shaded,
             covering: work.covering,
@@ -203,8 +197,9 @@ struct CasterDocument {
     side_triangles: usize,
 }
 
+/// Something amiss that did not stop the work.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct WarningDocument {
+pub struct WarningDocument {
     code: &'static str,
     count: usize,
     message: String,
@@ -212,7 +207,7 @@ pub(crate) struct WarningDocument {
 
 impl RenderDocument {
     /// Describes a finished render.
-    pub(crate) fn new(job: RenderInputs<'_>, done: &Rendered, files: Vec<FileDocument>) -> Self {
+    pub fn new(job: RenderInputs<'_>, done: &Rendered, files: Vec<FileDocument>) -> Self {
         let params = job.params.iter().map(|(k, v)| (k.to_owned(), v.to_owned()));
         Self {
             scene: job.scene.name.clone(),
@@ -243,7 +238,8 @@ impl RenderDocument {
     }
 
     /// The same with what each draw counted.
-    pub(crate) fn with_draws(self, report: &SubmitReport) -> Self {
+    #[must_use]
+    pub fn with_draws(self, report: &SubmitReport) -> Self {
         Self {
             draws: Some(draw_documents(report)),
             ..self
@@ -289,7 +285,7 @@ fn casters(scene: &gnomon_pipeline::world::scene::Scene, done: &Rendered) -> Vec
 }
 
 /// Stable names of how casters were counted.
-pub(crate) fn method_name(method: VolumeMethod) -> &'static str {
+fn method_name(method: VolumeMethod) -> &'static str {
     match method {
         VolumeMethod::DepthPass => "zpass",
         VolumeMethod::DepthFail => "zfail",
@@ -327,8 +323,8 @@ impl WorkDocument {
     }
 
     fn total(report: &SubmitReport) -> Self {
-        let sum = tables::frame_counters(report);
-        let clear = tables::clears(report);
+        let sum = sums::frame_counters(report);
+        let clear = sums::clears(report);
         let draws = report.passes.iter().map(|p| p.draws.len()).sum();
         Self::new(draws, &sum, &clear.traffic)
     }
@@ -345,7 +341,7 @@ pub(super) fn traffic(named: Vec<(String, Traffic)>) -> Object<TrafficDocument> 
 
 impl WarningDocument {
     /// Describes a warning.
-    pub(crate) fn new(warning: &Warning) -> Self {
+    pub fn new(warning: &Warning) -> Self {
         Self {
             code: warning.code,
             count: warning.count,

@@ -1,15 +1,15 @@
-//! The JSON document of `gnomon pixel`.
+//! The history of a pixel as JSON.
 
-use gnomon_raster::{FragmentEnd, LoadOp, StoreOp};
+use gnomon_raster::{LoadOp, StoreOp};
 use gnomon_traces::history::{Change, EventKind, FragmentEvent, History, PixelEvent, Value};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use super::words::{operation, sign};
+use super::words::{end_name, operation, sign};
 
 /// Everything that happened to a pixel.
 #[derive(Serialize)]
-pub(crate) struct PixelDocument {
+pub struct PixelDocument {
     pixel: [u32; 2],
     frame: usize,
     size: [u32; 2],
@@ -59,7 +59,8 @@ struct ColorDocument {
 }
 
 impl PixelDocument {
-    pub(crate) fn new(h: &History, frame: usize) -> Self {
+    /// Of frame number `frame`.
+    pub fn new(h: &History, frame: usize) -> Self {
         let attachments = h.attachments.iter().map(|a| AttachmentDocument {
             label: a.label.clone(),
             texture: a.texture.index(),
@@ -93,18 +94,6 @@ fn float(bits: &u32) -> Json {
     match v.is_finite() {
         true => json!(v),
         false => json!(v.to_string()),
-    }
-}
-
-/// The stable name of how a fragment ended.
-pub(super) fn end_name(end: FragmentEnd) -> &'static str {
-    match end {
-        FragmentEnd::Hiz => "hiz",
-        FragmentEnd::Bounds => "bounds",
-        FragmentEnd::Stencil => "stencil",
-        FragmentEnd::Depth => "depth",
-        FragmentEnd::Discarded => "discarded",
-        FragmentEnd::Written => "written",
     }
 }
 

@@ -157,6 +157,7 @@ pub(crate) fn document(
         params,
         gpu: settings.gpu,
         repeat: settings.repeat,
+        supersample: 1,
     };
     json::text(&RenderDocument::new(inputs, done, Vec::new()))
 }

@@ -156,7 +156,10 @@ fn buffer_bits(lab: &mut Lab) -> Result<Finding, ReproduceError> {
                   draws, at full light of 255 and of as many shades as keep it within 8 bits"
             .to_owned(),
         measures,
-        reason: String::new(),
+        reason: "The scenes are ours, under the sphere round their light; a buffer counts the \
+                 overlaps of wedges in the picture, so that more casters behind each other \
+                 need more bits."
+            .to_owned(),
         charts: Vec::new(),
     })
 }

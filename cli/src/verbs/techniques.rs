@@ -124,7 +124,8 @@ mod tests {
             let text = list(*technique, &elsewhere);
             let whole = list(*technique, &[]);
             for p in technique.params() {
-                let setting = format!("    {}={}  ", p.name, p.default);
+                // On a line of its own: conditions name settings too.
+                let setting = format!("\n    {}={}  ", p.name, p.default);
                 assert!(whole.contains(setting.trim_end()), "{}", p.name);
                 let own = text.contains(setting.trim_end());
                 assert_eq!(

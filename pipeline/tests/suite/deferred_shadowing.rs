@@ -383,7 +383,7 @@ fn low_sun(row: usize) -> (Environment, f64) {
     texels[64 * row + 9] = [1000.0; 3];
     let map = Environment::of_radiance("low sun", [64, 32], texels, settings).unwrap();
     let edge = |row: usize| (0.5 - row as f64 / 32.0) * std::f64::consts::PI;
-    let height = edge(row).sin() - edge(row + 1).sin();
+    let height = libm::sin(edge(row)) - libm::sin(edge(row + 1));
     (map, 1000.0 * std::f64::consts::TAU / 64.0 * height)
 }
 

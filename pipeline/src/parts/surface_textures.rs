@@ -31,7 +31,7 @@ impl SurfaceTextures {
     }
 
     fn find(&self, picture: &Arc<Picture>) -> Option<TextureId> {
-        let same = |(known, _): &&(Arc<Picture>, TextureId)| Arc::ptr_eq(known, picture);
+        let same = |(known, _): &&(Arc<Picture>, TextureId)| known == picture;
         self.known.iter().find(same).map(|(_, id)| *id)
     }
 

@@ -25,7 +25,7 @@ pub(crate) fn picture(width: u32, texels: &[[u8; 3]]) -> Arc<Picture> {
     let image = image::RgbImage::from_raw(width, height, texels.concat()).unwrap();
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-    Arc::new(Picture::decode(bytes.into_inner()).unwrap())
+    Arc::new(Picture::decode(&bytes.into_inner()).unwrap())
 }
 
 /// Lays a picture on all of an object.

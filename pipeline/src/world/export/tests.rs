@@ -230,7 +230,7 @@ fn textures_are_read_back() {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let image = image::RgbImage::from_raw(2, 1, vec![255, 0, 0, 0, 0, 255]).unwrap();
     image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-    let picture = std::sync::Arc::new(Picture::decode(bytes.into_inner()).unwrap());
+    let picture = std::sync::Arc::new(Picture::decode(&bytes.into_inner()).unwrap());
     let mut scene = builtin::build("cylinder").unwrap();
     for (k, object) in scene.objects.iter_mut().enumerate() {
         let count = object.mesh.triangles().len() as u32;

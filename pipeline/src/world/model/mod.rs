@@ -13,6 +13,7 @@ pub use piece::{Model, ModelCamera, Piece};
 
 use crate::world::files::{Outside, SceneFolder};
 use crate::world::obj::{self, ObjError, ObjMesh};
+use crate::world::texture::Gallery;
 use gltf::GltfError;
 use ply::{PlyError, PlyMesh};
 
@@ -90,15 +91,21 @@ pub fn load_given_at(path: &Path, outside: Outside, time: f64) -> Result<Model, 
     Ok(read)
 }
 
-/// Reads a model that a scene in `folder` names, at a time of its animation, in seconds.
+/// Reads a model that a scene in `folder` names, at a time of its animation, in seconds;
+/// `gallery` has the scene's pictures.
 ///
 /// # Errors
 /// As [`load_given`].
-pub fn load_from(path: &Path, folder: &SceneFolder, time: f64) -> Result<Model, ModelError> {
+pub fn load_from(
+    path: &Path,
+    folder: &SceneFolder,
+    gallery: &mut Gallery,
+    time: f64,
+) -> Result<Model, ModelError> {
     let read = match format(path).ok_or_else(|| unknown(path))? {
-        Format::Obj => from_obj(path, obj::load_from(path, folder)?),
+        Format::Obj => from_obj(path, obj::load_from(path, folder, gallery)?),
         Format::Ply => from_ply(path, ply::load_from(path, folder)?),
-        Format::Gltf => gltf::load_from(path, folder, time)?,
+        Format::Gltf => gltf::load_from(path, folder, gallery, time)?,
     };
     Ok(read)
 }

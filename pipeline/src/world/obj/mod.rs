@@ -31,7 +31,7 @@ use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::material::MaterialPart;
 use crate::world::shape::Shape;
 use crate::world::tally::{Tally, beginning};
-use crate::world::texture::{CornerCoordinates, MAX_PICTURE_BYTES};
+use crate::world::texture::{CornerCoordinates, Gallery, MAX_PICTURE_BYTES};
 use crate::world::warning::SceneWarning;
 pub use lines::NotText;
 use mesh::Faces;
@@ -192,25 +192,31 @@ pub fn load(path: &Path) -> Result<ObjMesh, ObjError> {
 /// As [`load`].
 pub fn load_given(path: &Path, outside: Outside) -> Result<ObjMesh, ObjError> {
     let folder = SceneFolder::of(path, outside);
-    of_bytes(files::read(path, MAX_OBJ_BYTES), path, &folder)
+    let bytes = files::read(path, MAX_OBJ_BYTES);
+    of_bytes(bytes, path, &folder, &mut Gallery::default())
 }
 
-/// Reads an OBJ file that a scene in `folder` names.
+/// Reads an OBJ file that a scene in `folder` names; `gallery` has the scene's pictures.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_from(path: &Path, folder: &SceneFolder) -> Result<ObjMesh, ObjError> {
-    of_bytes(folder.read(path, MAX_OBJ_BYTES), path, folder)
+pub fn load_from(
+    path: &Path,
+    folder: &SceneFolder,
+    gallery: &mut Gallery,
+) -> Result<ObjMesh, ObjError> {
+    of_bytes(folder.read(path, MAX_OBJ_BYTES), path, folder, gallery)
 }
 
 fn of_bytes(
     bytes: Result<Vec<u8>, FileError>,
     path: &Path,
     folder: &SceneFolder,
+    gallery: &mut Gallery,
 ) -> Result<ObjMesh, ObjError> {
     let file = path.display().to_string();
     let bytes = bytes.map_err(|e| ObjError::whole_file(&file, e.into()))?;
-    parse_with(&bytes, &file, Some(&Beside { path, folder }))
+    parse_with(&bytes, &file, Some((&Beside { path, folder }, gallery)))
 }
 
 /// Libraries in the folder of a model.
@@ -274,13 +280,15 @@ pub fn parse(bytes: &[u8], file: &str) -> Result<ObjMesh, ObjError> {
 fn parse_with(
     bytes: &[u8],
     file: &str,
-    libraries: Option<&dyn Libraries>,
+    libraries: Option<(&dyn Libraries, &mut Gallery)>,
 ) -> Result<ObjMesh, ObjError> {
     let scan = Scan::of(bytes, file)?;
     let faces = Faces::of(&scan);
     let shape = faces.shape(&scan.points);
     let shape = shape.map_err(|problem| ObjError::whole_file(file, problem))?;
-    let paint = libraries.map_or_else(Paint::default, |l| Paint::of(&scan, &faces, l));
+    let paint = libraries.map_or_else(Paint::default, |(libraries, gallery)| {
+        Paint::of(&scan, &faces, libraries, gallery)
+    });
     let warnings = faces.triangles.warnings();
     let warnings = warnings.chain(warnings_of(&scan, &paint)).collect();
     Ok(ObjMesh {
@@ -478,7 +486,9 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     }
 
     fn painted(text: &str, library: &str) -> ObjMesh {
-        parse_with(text.as_bytes(), "t.obj", Some(&One(library.as_bytes()))).unwrap()
+        let libraries = One(library.as_bytes());
+        let beside = (&libraries as &dyn Libraries, &mut Gallery::default());
+        parse_with(text.as_bytes(), "t.obj", Some(beside)).unwrap()
     }
 
     /// A folder with `paint.mtl` in it.
@@ -576,7 +586,8 @@ g rest\nusemtl paint\nf 1/1 2/1 6/1 5/1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     proptest! {
         #[test]
         fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            let _ = parse_with(CUBE_WITH_LIBRARY.as_bytes(), "fuzz", Some(&One(&bytes)));
+            let beside = (&One(&bytes) as &dyn Libraries, &mut Gallery::default());
+            let _ = parse_with(CUBE_WITH_LIBRARY.as_bytes(), "fuzz", Some(beside));
             let _ = parse(&bytes, "fuzz");
         }
 

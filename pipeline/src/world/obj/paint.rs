@@ -13,9 +13,7 @@ use super::scan::Scan;
 use crate::world::files::FileError;
 use crate::world::material::MaterialPart;
 use crate::world::tally::Tally;
-use crate::world::texture::{
-    CornerCoordinates, MAX_FILE_TEXELS, Picture, REPEATED, SurfaceTexture,
-};
+use crate::world::texture::{CornerCoordinates, Gallery, Picture, REPEATED, SurfaceTexture};
 
 /// Where material libraries come from.
 pub(super) trait Libraries {
@@ -49,7 +47,12 @@ pub(super) struct Paint {
 }
 
 impl Paint {
-    pub(super) fn of(scan: &Scan, faces: &Faces, libraries: &dyn Libraries) -> Self {
+    pub(super) fn of(
+        scan: &Scan,
+        faces: &Faces,
+        libraries: &dyn Libraries,
+        gallery: &mut Gallery,
+    ) -> Self {
         let mut paint = Self::default();
         for line in &scan.libraries {
             for name in library::names(line, |name| libraries.has(name)) {
@@ -60,7 +63,12 @@ impl Paint {
             }
         }
         let materials = paint.find_all(scan);
-        paint.share_out(&materials, faces, &mut Pictures::new(libraries));
+        let mut pictures = Pictures {
+            libraries,
+            known: BTreeMap::new(),
+            gallery,
+        };
+        paint.share_out(&materials, faces, &mut pictures);
         paint
     }
 
@@ -157,19 +165,10 @@ impl Paint {
 struct Pictures<'a> {
     libraries: &'a dyn Libraries,
     known: BTreeMap<(String, String), Result<Arc<Picture>, String>>,
-    /// Texels that may still be read.
-    left: u64,
+    gallery: &'a mut Gallery,
 }
 
-impl<'a> Pictures<'a> {
-    fn new(libraries: &'a dyn Libraries) -> Self {
-        Self {
-            libraries,
-            known: BTreeMap::new(),
-            left: MAX_FILE_TEXELS,
-        }
-    }
-
+impl Pictures<'_> {
     /// The picture of a line of a library, or what is wrong with it.
     fn read(&mut self, map: &MapLine, library: &str) -> Result<Arc<Picture>, String> {
         let there = |name: &&String| self.libraries.has_picture(library, name);
@@ -188,6 +187,6 @@ impl<'a> Pictures<'a> {
     fn load(&mut self, library: &str, name: &str) -> Result<Arc<Picture>, String> {
         let bytes = self.libraries.picture(library, name);
         let bytes = bytes.map_err(|e| e.to_string())?;
-        Picture::within(bytes, &mut self.left).map_err(|e| e.to_string())
+        self.gallery.picture(&bytes).map_err(|e| e.to_string())
     }
 }

@@ -101,7 +101,7 @@ impl SceneSource {
     /// The view is none: see [`ViewError`](super::ViewError).
     pub fn seen(&self, scene: &Scene, view: &View) -> Result<Scene, SceneError> {
         let mut seen = scene.clone();
-        view.apply(&mut seen, matches!(self.kind, Kind::Model(_)))?;
+        view.apply(&mut seen, self.is_framed())?;
         Ok(seen)
     }
 
@@ -133,9 +133,13 @@ impl SceneSource {
         if let Some(environment) = &self.environment {
             environment.light(&mut scene, &mut self.maps)?;
         }
-        let framed = matches!(self.kind, Kind::Model(_) | Kind::Moving { .. });
-        self.view.apply(&mut scene, framed)?;
+        self.view.apply(&mut scene, self.is_framed())?;
         Ok(scene)
+    }
+
+    /// Whether the scene is a model, with a ground that turns with the eye.
+    fn is_framed(&self) -> bool {
+        matches!(self.kind, Kind::Model(_) | Kind::Moving { .. })
     }
 }
 
@@ -153,6 +157,21 @@ mod tests {
         assert!(still.at(0.0).unwrap() == still.at(9.0).unwrap());
     }
 
+    /// A triangle that goes from 0 to 1 along x in a second: three corners, then the times,
+    /// then two places.
+    const MOVING: &str = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "scene": 0,
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "animations": [{"samplers": [{"input": 1, "output": 2}],
+            "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 2, "type": "SCALAR"},
+            {"bufferView": 0, "byteOffset": 44, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 68}],
+        "buffers": [{"byteLength": 68, "uri":
+            "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAA="}]}"#;
+
     #[test]
     fn scenes_are_looked_at_again_without_being_read_again() {
         let view = View {
@@ -166,7 +185,9 @@ mod tests {
             "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n",
         )
         .unwrap();
-        for name in ["walk", model.to_str().unwrap()] {
+        let moving = folder.join("moving.gltf");
+        std::fs::write(&moving, MOVING).unwrap();
+        for name in ["walk", model.to_str().unwrap(), moving.to_str().unwrap()] {
             let mut source = SceneSource::open(name).unwrap();
             let plain = source.at(0.5).unwrap();
             let seen = source.seen(&plain, &view).unwrap();

@@ -7,7 +7,7 @@ use std::io::Cursor;
 
 use gnomon_raster::format::f16_from_f32;
 use image::codecs::png::PngDecoder;
-use image::{ColorType, DynamicImage, ImageDecoder};
+use image::{ColorType, DynamicImage, ImageDecoder, Limits};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
@@ -18,6 +18,9 @@ use crate::world::light_image::linear;
 
 /// What all PNG files begin with.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// Bytes that the decoder of PNG takes at most besides texels: a few thousand bytes of a colour
+/// profile become any number. A larger one is left out, for none is used.
+const BESIDE: u64 = 16 << 20;
 /// What all JPEG files begin with.
 const JPEG: &[u8] = b"\xff\xd8\xff";
 
@@ -63,7 +66,9 @@ pub(super) fn texels(bytes: &[u8]) -> Result<u64, PictureError> {
 type Header<D> = Result<(D, [u32; 2]), PictureError>;
 
 fn png_header(bytes: &[u8]) -> Header<PngDecoder<Cursor<&[u8]>>> {
-    let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(undecodable)?;
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(BESIDE);
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(undecodable)?;
     let (width, height) = decoder.dimensions();
     let size = checked([width, height].map(u64::from))?;
     Ok((decoder, size))
@@ -137,6 +142,8 @@ fn of_numbers<N: Copy + Into<usize>>(size: [u32; 2], table: &[u16], numbers: &[N
 
 #[cfg(test)]
 mod tests {
+    use image::ImageEncoder as _;
+
     use super::*;
 
     fn png_of(image: DynamicImage) -> Vec<u8> {
@@ -231,6 +238,25 @@ mod tests {
             ),
             "{problem}"
         );
+    }
+
+    /// 65 MB of zeros in a file of some thousand bytes.
+    #[test]
+    fn profiles_that_swell_are_left_out() {
+        let with_profile = |length: usize| {
+            let mut bytes = Vec::new();
+            let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+            encoder.set_icc_profile(vec![0; length]).unwrap();
+            let written = encoder.write_image(&[7; 3], 1, 1, image::ExtendedColorType::Rgb8);
+            written.unwrap();
+            bytes
+        };
+        let profile = |bytes: &[u8]| png_header(bytes).unwrap().0.icc_profile().unwrap();
+        assert_eq!(profile(&with_profile(1000)), Some(vec![0; 1000]));
+        let bomb = with_profile(65 << 20);
+        assert!(bomb.len() < 1 << 20, "{} bytes", bomb.len());
+        assert_eq!(profile(&bomb), None);
+        assert!(decode(&bomb).is_ok());
     }
 
     fn crc32(bytes: &[u8]) -> u32 {

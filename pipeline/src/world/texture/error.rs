@@ -57,6 +57,21 @@ pub enum PictureError {
         /// Texels that may still be read.
         left: u64,
     },
+    /// Its file is too long.
+    #[error(
+        "is longer than {} bytes, the most that is read of a picture",
+        super::MAX_PICTURE_BYTES
+    )]
+    TooLong,
+    /// More bytes than are left for it.
+    #[error(
+        "has more bytes than the {left} that are left of {} for all pictures of a file",
+        super::MAX_FILE_PICTURE_BYTES
+    )]
+    TooManyBytes {
+        /// Bytes that may still be read.
+        left: u64,
+    },
     /// The decoder refuses it.
     #[error("cannot be decoded: {0}")]
     Undecodable(String),

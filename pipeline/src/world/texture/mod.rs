@@ -6,6 +6,7 @@
 
 mod decode;
 mod error;
+mod gallery;
 mod mips;
 mod picture;
 mod sample;
@@ -17,6 +18,7 @@ use gnomon_raster::Sampler;
 use gnomon_raster::state::{AddressMode, FilterMode};
 
 pub use error::{MAX_PICTURE_TEXELS, PictureError, PictureKind};
+pub use gallery::{Gallery, MAX_FILE_PICTURE_BYTES};
 pub use mips::Level;
 pub use picture::{MAX_PICTURE_BYTES, Picture};
 pub(crate) use seams::split;
@@ -24,7 +26,7 @@ pub(crate) use seams::split;
 /// Texture coordinates of a triangle's corners.
 pub type CornerCoordinates = [[f32; 2]; 3];
 
-/// Texels of all pictures of a file at most, without smaller levels.
+/// Texels of all different pictures of a file at most, without smaller levels.
 pub const MAX_FILE_TEXELS: u64 = 1 << 26;
 
 /// A picture on a surface.

@@ -17,6 +17,8 @@ pub const MAX_PICTURE_BYTES: u64 = 64 << 20;
 /// at each look-up; here a texel takes eight bytes instead of four, and is counted so.
 pub struct Picture {
     kind: PictureKind,
+    /// The hash of its file.
+    key: [u8; 32],
     encoded: Arc<[u8]>,
     size: [u32; 2],
     levels: Vec<Level>,
@@ -28,46 +30,35 @@ impl Picture {
     ///
     /// # Errors
     /// See [`PictureError`].
-    pub fn decode(bytes: Vec<u8>) -> Result<Self, PictureError> {
-        let (kind, first) = decode::decode(&bytes)?;
+    pub fn decode(bytes: &[u8]) -> Result<Self, PictureError> {
+        Self::of(bytes, *blake3::hash(bytes).as_bytes())
+    }
+
+    fn of(bytes: &[u8], key: [u8; 32]) -> Result<Self, PictureError> {
+        let (kind, first) = decode::decode(bytes)?;
         Ok(Self {
             kind,
+            key,
             encoded: bytes.into(),
             size: first.size,
             levels: mips::chain(first),
         })
     }
 
-    /// The same, once for equal bytes as long as there is room: frames of an animation read
-    /// their models again.
+    /// The same of bytes whose hash is `key`, once for equal ones as long as there is room:
+    /// frames of an animation read their models again.
     ///
     /// # Errors
     /// See [`PictureError`].
-    pub(crate) fn kept(bytes: Vec<u8>) -> Result<Arc<Self>, PictureError> {
+    pub(super) fn kept(bytes: &[u8], key: [u8; 32]) -> Result<Arc<Self>, PictureError> {
         static KEPT: Memo<Picture> = Memo::new(1 << 28);
-        let key = *blake3::hash(&bytes).as_bytes();
         if let Some(found) = KEPT.find(&key) {
             return Ok(found);
         }
-        let own = Arc::new(Self::decode(bytes)?);
+        let own = Arc::new(Self::of(bytes, key)?);
         let levels: usize = own.levels.iter().map(|l| l.packed.len()).sum();
         KEPT.keep(key, own.clone(), own.encoded.len() + levels);
         Ok(own)
-    }
-
-    /// Decodes one of several pictures of a file, which may have `left` more texels.
-    ///
-    /// # Errors
-    /// See [`PictureError`].
-    pub(crate) fn within(bytes: Vec<u8>, left: &mut u64) -> Result<Arc<Self>, PictureError> {
-        let texels = decode::texels(&bytes)?;
-        match left.checked_sub(texels) {
-            None => Err(PictureError::TooMany { left: *left }),
-            Some(rest) => {
-                *left = rest;
-                Self::kept(bytes)
-            }
-        }
     }
 
     /// How its file is coded.
@@ -97,9 +88,9 @@ impl Picture {
 }
 
 impl PartialEq for Picture {
-    /// Files alone: all else follows from them.
+    /// Files alone, by their hashes: all else follows from them.
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.encoded, &other.encoded) || self.encoded == other.encoded
+        self.key == other.key
     }
 }
 

@@ -69,7 +69,9 @@ impl<'a> Buffers<'a> {
         let whole = match (&buffer.uri, self.own) {
             (Some(uri), _) => {
                 if !self.read.contains_key(&index) {
-                    let bytes = self.load(uri).map_err(|p| p.at(format!("{place}.uri")))?;
+                    let loaded = self.load(uri, self.left);
+                    let bytes = loaded.map_err(|p| p.at(format!("{place}.uri")))?;
+                    self.left = self.left.saturating_sub(bytes.len() as u64);
                     self.read.insert(index, bytes);
                 }
                 &self.read[&index][..]
@@ -85,15 +87,16 @@ impl<'a> Buffers<'a> {
         Ok(&whole[..end as usize])
     }
 
-    /// The bytes of a picture that a URI names.
-    pub(super) fn picture(&mut self, uri: &str) -> Result<Vec<u8>, GltfProblem> {
-        self.load(uri)
+    /// The bytes of a picture that a URI names; they are none of the buffers'.
+    pub(super) fn picture(&self, uri: &str, limit: u64) -> Result<Vec<u8>, GltfProblem> {
+        self.load(uri, limit)
     }
 
-    fn load(&mut self, text: &str) -> Result<Vec<u8>, GltfProblem> {
-        let bytes = match (uri::read(text), &self.beside) {
+    /// What a URI names; of a file at most `limit` bytes.
+    fn load(&self, text: &str, limit: u64) -> Result<Vec<u8>, GltfProblem> {
+        Ok(match (uri::read(text), &self.beside) {
             (Ok(Uri::Data(bytes)), _) => bytes,
-            (Ok(Uri::File(name)), Some(beside)) => beside.read(&name, self.left)?,
+            (Ok(Uri::File(name)), Some(beside)) => beside.read(&name, limit)?,
             (Ok(Uri::File(_)), None) => return Err(GltfProblem::Missing { what: "a folder" }),
             (Err(valid), _) => {
                 return Err(GltfProblem::Bad {
@@ -102,8 +105,6 @@ impl<'a> Buffers<'a> {
                     valid,
                 });
             }
-        };
-        self.left = self.left.saturating_sub(bytes.len() as u64);
-        Ok(bytes)
+        })
     }
 }

@@ -52,6 +52,8 @@ struct Points {
 pub(super) struct Reader {
     vertices: u64,
     indices: u64,
+    /// Texture coordinates.
+    texels: u64,
 }
 
 impl Reader {
@@ -77,7 +79,7 @@ impl Reader {
             let mode = primitive.mode.unwrap_or(TRIANGLES);
             let cut = notes_cut(mode, indices.len());
             notes.cut.add_many(usize::from(cut), || place.clone());
-            let textured = self.coordinates(root, buffers, primitive, &mut points, &place)?;
+            let textured = self.coordinates(root, buffers, primitive, &mut points, notes, &place);
             let transform = base_color(root, primitive).and_then(|t| t.extensions.transform);
             let at = |c: u32| textured.get(c as usize).copied().unwrap_or_default();
             let moved = triangles(mode, &indices).into_iter().map(|t| {
@@ -94,7 +96,7 @@ impl Reader {
             corners.extend(moved);
         }
         let mut solid = solid(&points.all, &corners, notes, index);
-        if points.coordinates.is_empty() {
+        if points.coordinates.values().all(Vec::is_empty) {
             solid.coordinates = Vec::new();
         }
         Ok(solid)
@@ -132,29 +134,36 @@ impl Reader {
     }
 
     /// Texture coordinates of a primitive's points: the set of its material's base colour.
+    /// Wrong ones are noted and none, for a model without its paint is still a model.
     fn coordinates<'p>(
         &mut self,
         root: &Root,
         buffers: &mut Buffers<'_>,
         primitive: &Primitive,
         points: &'p mut Points,
+        notes: &mut Notes,
         place: &str,
-    ) -> Checked<&'p [[f32; 2]]> {
+    ) -> &'p [[f32; 2]] {
         let set = base_color(root, primitive).map_or(0, texture::set);
         let Some(accessor) = texture::accessor(&primitive.attributes, set) else {
-            return Ok(&[]);
+            return &[];
         };
         let slot = match points.coordinates.entry(accessor) {
-            Entry::Occupied(known) => return Ok(known.into_mut().as_slice()),
+            Entry::Occupied(known) => return known.into_mut(),
             Entry::Vacant(slot) => slot,
         };
         let place = format!("{place}.attributes.TEXCOORD_{set}");
-        let left = MOST - self.vertices;
-        let read: Vec<[f64; 2]> = accessor::read(root, buffers, accessor, "VEC2", left, &place)?;
-        self.vertices += read.len() as u64;
+        let left = MOST - self.texels;
+        let read: Vec<[f64; 2]> = accessor::read(root, buffers, accessor, "VEC2", left, &place)
+            .unwrap_or_else(|problem| {
+                (notes.coordinates).add(|| format!("{}: {}", problem.place, problem.problem));
+                Vec::new()
+            });
+        self.texels += read.len() as u64;
+        let infinite = read.as_flattened().iter().filter(|v| !v.is_finite());
+        (notes.coordinates).add_many(infinite.count(), || format!("{place}: not finite"));
         let finite = |v: f64| if v.is_finite() { v as f32 } else { 0.0 };
-        let own: Vec<[f32; 2]> = read.into_iter().map(|at| at.map(finite)).collect();
-        Ok(slot.insert(own).as_slice())
+        slot.insert(read.into_iter().map(|at| at.map(finite)).collect())
     }
 
     fn indices(
@@ -292,8 +301,8 @@ mod tests {
         let root = Root::default();
         let mut buffers = Buffers::new(&root, None, None);
         let mut reader = Reader {
-            vertices: 0,
             indices: 3 * MOST - 5,
+            ..Reader::default()
         };
         let primitive = Primitive::default();
         let mut indices = |points| reader.indices(&root, &mut buffers, &primitive, points, "p");

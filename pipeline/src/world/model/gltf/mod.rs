@@ -36,7 +36,7 @@ pub(crate) use texture::SMALLEST;
 use super::piece::{MOST, Model, Piece};
 use crate::world::files::{self, FileError, Outside, SceneFolder};
 use crate::world::material::{Material, MaterialPart};
-use crate::world::texture::turned_round;
+use crate::world::texture::{Gallery, turned_round};
 use buffers::{Beside, Buffers};
 use error::{Checked, element};
 use mesh::{Local, Reader};
@@ -70,21 +70,35 @@ const LARGEST: f64 = f32::MAX as f64;
 /// See [`GltfProblem`].
 pub fn load_given(path: &Path, outside: Outside, time: f64) -> Result<Model, GltfError> {
     let folder = SceneFolder::of(path, outside);
-    of_bytes(files::read(path, MAX_GLTF_BYTES), path, &folder, time)
+    let bytes = files::read(path, MAX_GLTF_BYTES);
+    of_bytes(bytes, path, &folder, &mut Gallery::default(), time)
 }
 
-/// Reads a file that a scene in `folder` names, as it is at `time`.
+/// Reads a file that a scene in `folder` names, as it is at `time`; `gallery` has the scene's
+/// pictures.
 ///
 /// # Errors
 /// See [`GltfProblem`].
-pub fn load_from(path: &Path, folder: &SceneFolder, time: f64) -> Result<Model, GltfError> {
-    of_bytes(folder.read(path, MAX_GLTF_BYTES), path, folder, time)
+pub fn load_from(
+    path: &Path,
+    folder: &SceneFolder,
+    gallery: &mut Gallery,
+    time: f64,
+) -> Result<Model, GltfError> {
+    of_bytes(
+        folder.read(path, MAX_GLTF_BYTES),
+        path,
+        folder,
+        gallery,
+        time,
+    )
 }
 
 fn of_bytes(
     bytes: Result<Vec<u8>, FileError>,
     path: &Path,
     folder: &SceneFolder,
+    gallery: &mut Gallery,
     time: f64,
 ) -> Result<Model, GltfError> {
     let file = path.display().to_string();
@@ -93,7 +107,7 @@ fn of_bytes(
         place: String::new(),
         problem: e.into(),
     })?;
-    parse_with(&bytes, &file, Some(Beside { path, folder }), time)
+    parse_with(&bytes, &file, Some(Beside { path, folder }), gallery, time)
 }
 
 /// Reads a file's bytes; buffers that are files of their own are an error. `file` names it
@@ -110,23 +124,29 @@ pub fn parse(bytes: &[u8], file: &str) -> Result<Model, GltfError> {
 /// # Errors
 /// See [`GltfProblem`].
 pub fn parse_at(bytes: &[u8], file: &str, time: f64) -> Result<Model, GltfError> {
-    parse_with(bytes, file, None, time)
+    parse_with(bytes, file, None, &mut Gallery::default(), time)
 }
 
 fn parse_with(
     bytes: &[u8],
     file: &str,
     beside: Option<Beside<'_>>,
+    gallery: &mut Gallery,
     time: f64,
 ) -> Result<Model, GltfError> {
-    model(bytes, beside, time).map_err(|e| GltfError {
+    model(bytes, beside, gallery, time).map_err(|e| GltfError {
         file: file.to_owned(),
         place: e.place,
         problem: e.problem,
     })
 }
 
-fn model(bytes: &[u8], beside: Option<Beside<'_>>, time: f64) -> Checked<Model> {
+fn model(
+    bytes: &[u8],
+    beside: Option<Beside<'_>>,
+    gallery: &mut Gallery,
+    time: f64,
+) -> Checked<Model> {
     let (json, own) = container::parts(bytes).map_err(|p| p.at(""))?;
     check_json(json, MAX_JSON).map_err(|p| p.at(""))?;
     check_asset(json)?;
@@ -137,7 +157,7 @@ fn model(bytes: &[u8], beside: Option<Beside<'_>>, time: f64) -> Checked<Model> 
         buffers: Buffers::new(&root, own, beside),
         reader: Reader::default(),
         meshes: BTreeMap::new(),
-        pictures: Pictures::default(),
+        pictures: Pictures::new(gallery),
         notes: Notes::default(),
         triangles: 0,
     };
@@ -184,7 +204,7 @@ struct Build<'a> {
     reader: Reader,
     /// Those that were read.
     meshes: BTreeMap<usize, Local>,
-    pictures: Pictures,
+    pictures: Pictures<'a>,
     notes: Notes,
     /// Triangles of all nodes so far.
     triangles: u64,

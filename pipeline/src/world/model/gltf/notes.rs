@@ -27,6 +27,8 @@ pub(super) struct Notes {
     pub(super) falloff: Tally,
     /// Channels of an animation that move no node.
     pub(super) channels: Tally,
+    /// Texture coordinates that cannot be used.
+    pub(super) coordinates: Tally,
     /// Pictures that cannot be used.
     pub(super) missing_maps: Tally,
     /// Base colours outside 0..=1.
@@ -70,6 +72,10 @@ impl Notes {
             maps.warning(
                 "ignored-maps",
                 "textures of other things than base colours were ignored",
+            ),
+            self.coordinates.warning(
+                "bad-coordinates",
+                "texture coordinates cannot be used and are 0",
             ),
             self.missing_maps.warning(
                 "missing-maps",

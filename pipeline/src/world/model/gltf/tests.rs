@@ -846,13 +846,60 @@ fn pictures_that_cannot_be_had_are_told_and_wrong_numbers_are_errors() {
             json!([{}]),
             "images[0]: uri or bufferView is missing",
         ),
-        ("/accessors/2/type", json!("VEC3"), "'VEC3'"),
     ] {
         let error = textured(plain(), &[(pointer, value)])
             .unwrap_err()
             .to_string();
         assert!(error.contains(what), "{error}");
     }
+}
+
+/// What lies on nothing must not cost the model, nor what lies wrongly.
+#[test]
+fn coordinates_that_cannot_be_used_are_told() {
+    let plain = || base_color(json!({"index": 0}));
+    for material in [plain(), json!({})] {
+        for (pointer, value, what) in [
+            ("/accessors/2/type", json!("VEC3"), "'VEC3'"),
+            ("/accessors/2/count", json!(5), "accessors[2]"),
+            (
+                "/accessors/2/bufferView",
+                json!(9),
+                "none of the 6 bufferViews",
+            ),
+        ] {
+            let model = textured(material.clone(), &[(pointer, value)]).unwrap();
+            assert_eq!(codes(&model), ["bad-coordinates"], "{pointer}");
+            let message = &model.warnings[0].message;
+            assert!(message.contains(what), "{message}");
+            assert!(model.pieces[0].coordinates.is_empty());
+            assert_eq!(model.pieces[0].shape.triangles.len(), TRIANGLES.len());
+        }
+    }
+}
+
+/// A hundred images in one view are one picture.
+#[test]
+fn pictures_that_repeat_are_one() {
+    let images = vec![json!({"bufferView": 5}); 2];
+    let model = textured(
+        base_color(json!({"index": 0})),
+        &[
+            ("/images", json!(images)),
+            ("/textures", json!([{"source": 0}, {"source": 1}])),
+            ("/materials/-", base_color(json!({"index": 1}))),
+            (
+                "/meshes/0/primitives/-",
+                json!({"attributes": {"POSITION": 0, "TEXCOORD_0": 2}, "material": 1}),
+            ),
+        ],
+    );
+    let model = model.unwrap();
+    let pictures: Vec<_> = (model.pieces[0].parts.iter())
+        .map(|p| &p.texture.as_ref().unwrap().picture)
+        .collect();
+    assert_eq!(pictures.len(), 2);
+    assert!(std::sync::Arc::ptr_eq(pictures[0], pictures[1]));
 }
 
 /// The file with keys at 0, 1 and 3 seconds, whose node goes along x and turns about y.

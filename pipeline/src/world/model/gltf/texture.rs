@@ -11,26 +11,30 @@ use super::error::{Checked, GltfProblem, element};
 use super::notes::Notes;
 use super::schema::{Attributes, Root, TextureOfMaterial, TextureSampler, TextureTransform};
 use crate::world::texture::{
-    CornerCoordinates, MAX_FILE_TEXELS, Picture, REPEATED, SurfaceTexture,
+    CornerCoordinates, Gallery, MAX_PICTURE_BYTES, Picture, REPEATED, SurfaceTexture,
 };
 
+/// Bytes of all pictures of a file that are looked at, equal ones too: a file may say a
+/// hundred thousand times that one is in a view.
+const MAX_LOOKED_AT: u64 = 1 << 30;
+
 /// Pictures of a file, each read once.
-pub(super) struct Pictures {
+pub(super) struct Pictures<'a> {
     known: BTreeMap<usize, Option<Arc<Picture>>>,
-    /// Texels that may still be read.
+    gallery: &'a mut Gallery,
+    /// Bytes that may still be looked at.
     left: u64,
 }
 
-impl Default for Pictures {
-    fn default() -> Self {
+impl<'a> Pictures<'a> {
+    pub(super) fn new(gallery: &'a mut Gallery) -> Self {
         Self {
             known: BTreeMap::new(),
-            left: MAX_FILE_TEXELS,
+            gallery,
+            left: MAX_LOOKED_AT,
         }
     }
-}
 
-impl Pictures {
     /// The texture of a material's base colour. Numbers that mean nothing are errors; a
     /// picture that cannot be used is noted, for a model without its paint is still a model.
     pub(super) fn texture(
@@ -81,10 +85,15 @@ impl Pictures {
             }
             _ => why,
         };
+        let limit = MAX_PICTURE_BYTES.min(self.left);
+        let read: Vec<u8>;
         let bytes = match (image.buffer_view, &image.uri) {
-            (Some(view), _) => buffers.view(view, &place)?.0.to_vec(),
-            (None, Some(uri)) => match buffers.picture(uri) {
-                Ok(bytes) => bytes,
+            (Some(view), _) => buffers.view(view, &place)?.0,
+            (None, Some(uri)) => match buffers.picture(uri, limit) {
+                Ok(bytes) => {
+                    read = bytes;
+                    &read
+                }
                 Err(problem) => return Ok(Err(named(problem.to_string()))),
             },
             (None, None) => {
@@ -92,7 +101,13 @@ impl Pictures {
                 return Err(GltfProblem::Missing { what }.at(place));
             }
         };
-        Ok(Picture::within(bytes, &mut self.left).map_err(|e| named(e.to_string())))
+        let length = bytes.len() as u64;
+        if length > limit {
+            let why = format!("has {length} bytes; valid are at most {limit}");
+            return Ok(Err(named(why)));
+        }
+        self.left -= length;
+        Ok((self.gallery.picture(bytes)).map_err(|e| named(e.to_string())))
     }
 }
 

@@ -16,7 +16,7 @@ use crate::world::mesh::Shading;
 use crate::world::scene::near;
 use crate::world::scene::{Camera, Material, MaterialPart, Object, Rest, Scene, SceneWarning};
 use crate::world::shape::{Shape, on_circle};
-use crate::world::texture::turned_round;
+use crate::world::texture::{Gallery, turned_round};
 
 type Built<T> = Result<T, SceneFileError>;
 
@@ -45,8 +45,10 @@ pub(super) fn scene(
     let lit = table.environment.is_some() || moment.environment.is_some();
     require(source, "lights", table.lights.is_empty() && !lit)?;
     require(source, "objects", table.objects.is_empty())?;
-    for (index, object_table) in table.objects.iter().enumerate() {
-        let (object, warnings) = object(source, folder, index, object_table, moment.time)?;
+    let mut gallery = Gallery::default();
+    for (index, table) in table.objects.iter().enumerate() {
+        let built = object(source, folder, &mut gallery, index, table, moment.time);
+        let (object, warnings) = built?;
         out.objects.push(object);
         out.warnings.extend(warnings);
     }
@@ -194,11 +196,12 @@ fn light_shape(source: &Source<'_>, table: &LightShapeTable) -> Built<LightShape
 fn object(
     source: &Source<'_>,
     folder: &SceneFolder,
+    gallery: &mut Gallery,
     index: usize,
     table: &ObjectTable,
     time: f64,
 ) -> Built<(Object, Vec<SceneWarning>)> {
-    let mut read = shapes::shape(source, folder, &table.mesh, time)?;
+    let mut read = shapes::shape(source, folder, gallery, &table.mesh, time)?;
     let degrees = match &table.crease {
         Some(crease) => {
             let rule = "0..=180 (degrees)";
@@ -213,7 +216,7 @@ fn object(
     let moved = motion::moved(source, table.motion.as_ref(), time)?;
     let place = Place::read(source, table, moved)?;
     let rest = table.motion.is_some().then(|| read.shape.clone());
-    let paint = texture::paint(source, folder, table, &mut read)?;
+    let paint = texture::paint(source, folder, gallery, table, &mut read)?;
     if place.world_from_local().determinant() < 0.0 {
         turned_round(&mut read.coordinates);
     }

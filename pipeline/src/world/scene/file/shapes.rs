@@ -10,7 +10,7 @@ use crate::world::model::{self, Model};
 use crate::world::obj;
 use crate::world::scene::{MaterialPart, SceneWarning};
 use crate::world::shape::{self, Shape, Terrain};
-use crate::world::texture::CornerCoordinates;
+use crate::world::texture::{CornerCoordinates, Gallery};
 
 /// Sides of a round primitive.
 const SEGMENTS: std::ops::RangeInclusive<u32> = 3..=4096;
@@ -25,16 +25,17 @@ pub(super) struct Read {
     pub(super) warnings: Vec<SceneWarning>,
 }
 
-/// The shape that a table asks for at `time`, in seconds.
+/// The shape that a table asks for at `time`, in seconds; pictures go to the scene's.
 pub(super) fn shape(
     source: &Source<'_>,
     folder: &SceneFolder,
+    gallery: &mut Gallery,
     table: &MeshTable,
     time: f64,
 ) -> Result<Read, SceneFileError> {
     match table {
         MeshTable::Obj(path) => {
-            let read = obj::load_from(&folder.join(path.get_ref()), folder)
+            let read = obj::load_from(&folder.join(path.get_ref()), folder, gallery)
                 .map_err(|e| source.error(path.span(), e.to_string()))?;
             Ok(Read {
                 shape: read.shape,
@@ -44,7 +45,7 @@ pub(super) fn shape(
             })
         }
         MeshTable::Model(path) => {
-            let read = model::load_from(&folder.join(path.get_ref()), folder, time)
+            let read = model::load_from(&folder.join(path.get_ref()), folder, gallery, time)
                 .map_err(|e| source.error(path.span(), e.to_string()))?;
             Ok(of_model(read, path.get_ref()))
         }

@@ -5,12 +5,13 @@ use super::check::Source;
 use super::schema::ObjectTable;
 use super::shapes::Read;
 use crate::world::files::SceneFolder;
-use crate::world::texture::{MAX_PICTURE_BYTES, Picture, SurfaceTexture};
+use crate::world::texture::{Gallery, MAX_PICTURE_BYTES, SurfaceTexture};
 
-/// The picture of an object's material; coordinates of `read` are repeated as it asks.
+/// The picture of an object's material, out of the scene's; coordinates of `read` are repeated as it asks.
 pub(super) fn paint(
     source: &Source<'_>,
     folder: &SceneFolder,
+    gallery: &mut Gallery,
     table: &ObjectTable,
     read: &mut Read,
 ) -> Result<Option<SurfaceTexture>, SceneFileError> {
@@ -44,6 +45,6 @@ pub(super) fn paint(
     let refuse = |why: String| source.error(name.span(), format!("{}: {why}", path.display()));
     let bytes = folder.read(&path, MAX_PICTURE_BYTES);
     let bytes = bytes.map_err(|e| refuse(e.to_string()))?;
-    let picture = Picture::kept(bytes).map_err(|e| refuse(e.to_string()))?;
+    let picture = gallery.picture(&bytes).map_err(|e| refuse(e.to_string()))?;
     Ok(Some(SurfaceTexture::repeated(picture)))
 }

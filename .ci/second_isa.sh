@@ -28,6 +28,7 @@ own=(-o "Dir::State=$apt_root/state" -o "Dir::Cache=$apt_root/cache"
     -o "Dir::State::status=$apt_root/dpkg/status"
     -o APT::Architecture=amd64 -o APT::Architectures=amd64,arm64)
 apt-get "${own[@]}" update -qq
+rm -f "$apt_root"/*.deb
 newest() { apt-cache "${own[@]}" policy "$1" | awk '/Candidate:/ { print $2 }'; }
 version=$(newest rustc-web:amd64)
 short=$(printf '%s' "$version" | cut -d. -f1-2)
@@ -84,6 +85,7 @@ diff "$folder/native.digest" "$folder/foreign.digest"
 
 say "one frame of each technique"
 different=0
+rm -rf "$folder/native" "$folder/foreign"
 program=$(artifact bin gnomon <"$folder/native.json")
 mapfile -t techniques < <("$program" techniques --json |
     python3 -c 'import json, sys; [print(t["name"]) for t in json.load(sys.stdin)["techniques"]]')
@@ -95,6 +97,9 @@ for technique in "${techniques[@]}"; do
             --quiet --out "$folder/$side/$technique.png" --visibility "$folder/$side/$technique.npy" \
             >/dev/null 2>"$folder/$side/$technique.txt" || true
     done
+    if [ ! -s "$folder/native/$technique.png" ]; then
+        echo "$technique drew nothing: $(tail -1 "$folder/native/$technique.txt")" && different=1
+    fi
     for kind in png npy txt; do
         a=$folder/native/$technique.$kind b=$folder/foreign/$technique.$kind
         if [ -e "$a" ] || [ -e "$b" ]; then

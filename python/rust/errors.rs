@@ -29,12 +29,19 @@ pub(crate) fn raise(error: impl Error + 'static) -> PyErr {
     PyValueError::new_err(message)
 }
 
+/// The same of a technique: it hands the GPU's errors on as its own.
+pub(crate) fn raise_technique(error: TechniqueError) -> PyErr {
+    match error {
+        TechniqueError::Gpu(error) => raise(error),
+        other => raise(other),
+    }
+}
+
 /// The same of a render: it hands the GPU's errors on as its own.
 pub(crate) fn raise_render(error: RenderError) -> PyErr {
     match error {
-        RenderError::Gpu(error) | RenderError::Technique(TechniqueError::Gpu(error)) => {
-            raise(error)
-        }
+        RenderError::Gpu(error) => raise(error),
+        RenderError::Technique(error) => raise_technique(error),
         other => raise(other),
     }
 }

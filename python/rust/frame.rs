@@ -10,7 +10,7 @@ use gnomon::pipeline::world::scene;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-use crate::errors::{raise, raise_render};
+use crate::errors::{raise_render, raise_technique};
 use crate::execution::{Execution, Given};
 use crate::scene::Scene;
 use crate::settings::{GivenTechnique, chosen};
@@ -133,11 +133,14 @@ pub(crate) fn rendered(
         Some(cache) => technique.prepare(scene, params, cache, &|_| {}),
         None => Ok(Vec::new()),
     };
-    let ahead = ahead.map_err(raise)?.into_iter().map(|w| Warning {
-        code: "cache",
-        count: 1,
-        message: w.to_string(),
-    });
+    let ahead = ahead
+        .map_err(raise_technique)?
+        .into_iter()
+        .map(|w| Warning {
+            code: "cache",
+            count: 1,
+            message: w.to_string(),
+        });
     let mut done = driver::render(scene, technique, params, settings).map_err(raise_render)?;
     done.warnings.extend(ahead);
     Ok(done)

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gnomon::documents::{By, PixelDocument, TraceDocument, TrafficDocument, dram_bytes};
 use gnomon::pipeline::world::files;
@@ -17,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::accesses::{Accesses, WORDS};
-use crate::errors::{of_system, raise};
+use crate::errors::{of_system, raise, raise_technique};
 use crate::execution::{Execution, Given};
 use crate::history::{EVENT_WORDS, event_rows, values};
 use crate::replay::Replay;
@@ -240,7 +241,9 @@ pub(crate) fn record(
     };
     let scene = scene.scene.clone();
     let trace = execution.run(py, || {
-        let frame = technique.frame(&scene, size, &params).map_err(raise)?;
+        let frame = technique
+            .frame(&scene, size, &params)
+            .map_err(raise_technique)?;
         traces::record(meta, &frame.recording, options).map_err(raise)
     })?;
     let path = PathBuf::new();
@@ -280,9 +283,10 @@ fn find_profile(name: &str) -> PyResult<Profile> {
 
 /// Beside its place first, so that nobody sees half of it.
 fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    let part = path.with_file_name(name);
+    // The file's own name might be too long to add to, and two threads may write at once.
+    static NUMBER: AtomicUsize = AtomicUsize::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let part = path.with_file_name(format!(".gnomon-{}-{number}.part", std::process::id()));
     let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
     if written.is_err() {
         // What is left of it is of no use; that it stays there would be worse to tell.

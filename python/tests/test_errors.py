@@ -127,16 +127,17 @@ gnomon.render("cylinder", size=(64, 64), threads=1)
 held = 1 << 30
 resource.setrlimit(resource.RLIMIT_AS, (held, held))
 try:
-    gnomon.render("cylinder", size=(8192, 8192), threads=1)
+    gnomon.CALL("cylinder", size=(8192, 8192), threads=1)
 except MemoryError as error:
     print("short:", error)
 """
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="a limit of Linux")
-def test_memory_that_is_short_is_an_error(tmp_path):
+@pytest.mark.parametrize("call", ["render", "record"])
+def test_memory_that_is_short_is_an_error(tmp_path, call):
     done = subprocess.run(
-        [sys.executable, "-c", SHORT], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-c", SHORT.replace("CALL", call)], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("short:") and "which the system does not give" in done.stdout

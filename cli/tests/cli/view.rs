@@ -20,12 +20,13 @@ fn without_a_terminal_it_says_what_to_do() {
     assert!(folder.names().is_empty());
 }
 
-/// What `gnomon view` sends to a terminal while `keys` are pressed, and what is said behind
-/// it: the exit code, and whether the terminal echoes again. `None` where there is no
+/// What `gnomon view` sends to a terminal while `keys` are pressed, or it is sent a signal by
+/// a command that begins with `kill`, and what is said behind it: the exit code, and whether the terminal echoes again. `None` where there is no
 /// `script`.
 fn seen(folder: &Folder, flags: &str, keys: &[&str]) -> Option<String> {
     let line = format!(
-        "stty rows 20 cols 80; '{}' view cylinder {flags}; echo code=$?; stty -a",
+        "stty rows 20 cols 80; sh -c 'echo $$ >pid; exec \"$0\" view cylinder {flags}' '{}'; \
+         echo code=$?; stty -a",
         env!("CARGO_BIN_EXE_gnomon")
     );
     let mut script = Command::new("script");
@@ -43,6 +44,18 @@ fn seen(folder: &Folder, flags: &str, keys: &[&str]) -> Option<String> {
     for key in keys {
         // The frame between keys may not be there yet; none depends on that.
         sleep(Duration::from_millis(700));
+        if key.starts_with("kill") {
+            let pid = std::fs::read_to_string(folder.path("pid")).unwrap();
+            let (shell, line) = ("sh", format!("{key} {pid}"));
+            assert!(
+                Command::new(shell)
+                    .args(["-c", &line])
+                    .status()
+                    .unwrap()
+                    .success()
+            );
+            continue;
+        }
         stdin.write_all(key.as_bytes()).unwrap();
         stdin.flush().unwrap();
     }
@@ -90,6 +103,19 @@ fn keys_are_heard_and_the_terminal_is_given_back() {
     std::fs::remove_file(&picture).unwrap();
     folder.gnomon(command).fine();
     assert!(ours == std::fs::read(&picture).unwrap(), "{command}");
+}
+
+/// Whoever ends the viewer from outside finds the terminal as it was, and sees a signal.
+#[test]
+fn signals_give_the_terminal_back() {
+    let folder = Folder::new("view-signals");
+    for (kill, code) in [("kill -TERM", 143), ("kill -HUP", 129)] {
+        let Some(seen) = seen(&folder, "", &["", kill]) else {
+            return;
+        };
+        let after = afterwards(&seen);
+        assert!(after.contains(&format!("code={code}")), "{after}");
+    }
 }
 
 /// A frame that cannot be had is said on the screen; the terminal is given back all the same.

@@ -76,8 +76,8 @@ pub(super) enum Effect {
     Draw(Look),
     /// Tell the history of a pixel of a frame.
     Tell(Look, [u32; 2]),
-    /// Write the picture that is shown.
-    Save,
+    /// Write the whole frame.
+    Save(Look),
     /// Leave.
     Quit,
 }

@@ -18,6 +18,7 @@ mod run;
 mod save;
 mod screen;
 mod session;
+mod signals;
 mod state;
 mod studio;
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! From the command line to a screen, and back.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -11,9 +10,10 @@ use super::args::ViewerArgs;
 use super::blocks::Palette;
 use super::event::{Action, Effect, Event, Saved};
 use super::keys::Keys;
-use super::save::save;
+use super::save;
 use super::screen;
 use super::session::{self, Session};
+use super::signals::Signals;
 use super::state::State;
 use super::studio::Studio;
 use super::worker::Worker;
@@ -37,6 +37,7 @@ pub(crate) fn run(args: &ViewerArgs, registry: &Registry) -> Result<(), CliError
     let facts = studio.facts()?;
     let studio = Arc::new(studio);
     let worker = Worker::start(studio.clone()).map_err(CliError::Terminal)?;
+    let signals = Signals::heard().map_err(CliError::Terminal)?;
     let mut session = Session::start()?;
     let size = session.terminal.size().map_err(CliError::Terminal)?;
     let state = State::new(facts, technique, [size.width, size.height]);
@@ -49,9 +50,12 @@ pub(crate) fn run(args: &ViewerArgs, registry: &Registry) -> Result<(), CliError
         asked: Instant::now(),
         seen: Instant::now(),
         is_over: false,
+        signals,
     };
     let ended = viewer.show(&mut session);
     drop(session);
+    viewer.signals.end();
+    viewer.wait_for_pictures();
     let text = told(&viewer.state.saved);
     if !text.is_empty() {
         output::print_asked(&text, false)?;
@@ -101,6 +105,7 @@ struct Viewer {
     /// When the screen was drawn last.
     seen: Instant,
     is_over: bool,
+    signals: Signals,
 }
 
 impl Viewer {
@@ -110,7 +115,7 @@ impl Viewer {
         let first = self.state.start();
         self.do_all(first);
         self.draw(session)?;
-        while !self.is_over && Session::is_on() {
+        while !self.is_over && Session::is_on() && !self.signals.is_over() {
             let mut events = self.heard(&mut keys).map_err(CliError::Terminal)?;
             let Ok(()) = self.finished(&mut events) else {
                 return Ok(());
@@ -154,6 +159,17 @@ impl Viewer {
         Ok(())
     }
 
+    /// Until what was to be written is.
+    fn wait_for_pictures(&mut self) {
+        let mut events = Vec::new();
+        while self.state.saving > 0 && self.finished(&mut events).is_ok() {
+            for event in events.drain(..) {
+                self.state.update(event);
+            }
+            std::thread::sleep(TICK);
+        }
+    }
+
     fn do_all(&mut self, effects: Vec<Effect>) {
         for effect in effects {
             match effect {
@@ -162,13 +178,13 @@ impl Viewer {
                     self.worker.draw(look);
                 }
                 Effect::Tell(look, pixel) => self.worker.tell(look, pixel),
-                Effect::Save => {
-                    if let Some(drawn) = &self.state.shown {
-                        let result = save(&self.studio, drawn, &PathBuf::from("out"));
-                        let event = Event::Saved(result.map_err(|why| why.to_string()));
+                Effect::Save(look) => match self.state.shown.as_ref() {
+                    Some(drawn) if drawn.look == look => {
+                        let event = save::event(&self.studio, Ok(&**drawn));
                         self.state.update(event);
                     }
-                }
+                    _ => self.worker.save(look),
+                },
                 Effect::Quit => self.is_over = true,
             }
         }

@@ -1,8 +1,9 @@
 //! Writes the picture that is shown, as `render` would.
 
+use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
 
-use super::event::Saved;
+use super::event::{Event, Saved};
 use super::studio::{Drawn, Studio};
 use crate::draw::Picture;
 use crate::error::CliError;
@@ -10,6 +11,15 @@ use crate::output::files::Batch;
 use crate::overlay;
 use crate::verbs::file_stem;
 use crate::verbs::render::png_of;
+
+/// Where pictures are written.
+const FOLDER: &str = "out";
+
+/// Writes a frame, if there is one, and says so.
+pub(super) fn event(studio: &Studio, drawn: Result<impl Borrow<Drawn>, CliError>) -> Event {
+    let saved = drawn.and_then(|drawn| save(studio, drawn.borrow(), Path::new(FOLDER)));
+    Event::Saved(saved.map_err(|why| why.to_string()))
+}
 
 /// Writes the frame, and what explains it, into `folder` under names that nothing has yet.
 pub(super) fn save(studio: &Studio, drawn: &Drawn, folder: &Path) -> Result<Saved, CliError> {
@@ -28,12 +38,16 @@ pub(super) fn save(studio: &Studio, drawn: &Drawn, folder: &Path) -> Result<Save
     })
 }
 
-/// `SCENE-TECHNIQUE-view-N.png`, with the first number that is free.
+/// `SCENE-TECHNIQUE-view-N.png`, with the first number that is free, beside it as well.
 fn new_name(folder: &Path, drawn: &Drawn) -> PathBuf {
     let scene = file_stem(&drawn.scene.name);
     let name = |n: u32| format!("{scene}-{}-view-{n}.png", drawn.params.technique());
     let paths = (1..).map(|n| folder.join(name(n)));
-    let mut free = paths.filter(|path| !path.exists());
+    let overlay = drawn.look.overlay;
+    let is_taken = |path: &PathBuf| {
+        path.exists() || overlay.is_some_and(|kind| beside(path, kind.name()).exists())
+    };
+    let mut free = paths.filter(|path| !is_taken(path));
     free.next().unwrap_or_else(|| folder.join(name(0)))
 }
 

@@ -60,8 +60,8 @@ pub(super) struct State {
     pub(super) saved: Vec<Saved>,
     /// A smaller picture than wanted was asked for last.
     is_draft: bool,
-    /// The picture is to be written as soon as it is there.
-    is_saving: bool,
+    /// Pictures that are being written.
+    pub(super) saving: usize,
 }
 
 impl State {
@@ -84,7 +84,7 @@ impl State {
             cells,
             saved: Vec::new(),
             is_draft: false,
-            is_saving: false,
+            saving: 0,
         };
         state.look.size = state.full_size();
         state.cursor = state.look.size.map(|s| s / 2);
@@ -118,7 +118,10 @@ impl State {
                 true => self.ask(false),
                 false => Vec::new(),
             },
-            Event::Drawn { look, result } => self.take(look, result),
+            Event::Drawn { look, result } => {
+                self.take(&look, result);
+                Vec::new()
+            }
             Event::Told(result) => {
                 self.tell(result);
                 Vec::new()
@@ -271,14 +274,14 @@ impl State {
     }
 
     fn save(&mut self) -> Vec<Effect> {
-        if self.is_settled() {
-            return vec![Effect::Save];
+        if self.look.size.contains(&0) {
+            return Vec::new();
         }
-        self.is_saving = true;
-        match self.asked.as_ref() == Some(&self.look) {
-            true => Vec::new(),
-            false => self.ask(false),
+        if !self.is_settled() {
+            self.notice = vec!["drawing the picture to write".to_owned()];
         }
+        self.saving += 1;
+        vec![Effect::Save(self.look.clone())]
     }
 
     fn back(&mut self) -> Vec<Effect> {
@@ -312,26 +315,20 @@ impl State {
     }
 
     /// Shows a frame, unless something else is to be seen by now.
-    fn take(&mut self, look: Look, result: Result<Box<Drawn>, String>) -> Vec<Effect> {
-        if self.asked.as_ref() == Some(&look) {
+    fn take(&mut self, look: &Look, result: Result<Box<Drawn>, String>) {
+        if self.asked.as_ref() == Some(look) {
             self.asked = None;
         }
         if !look.is_like(&self.look) {
-            return Vec::new();
+            return;
         }
         match result {
             Ok(drawn) => self.shown = Some(drawn),
             Err(why) => {
                 self.shown = None;
-                self.is_saving = false;
                 self.notice = vec![why];
             }
         }
-        if self.is_saving && self.is_settled() {
-            self.is_saving = false;
-            return vec![Effect::Save];
-        }
-        Vec::new()
     }
 
     fn tell(&mut self, result: Result<Vec<String>, String>) {
@@ -346,6 +343,7 @@ impl State {
     }
 
     fn note_saved(&mut self, result: Result<Saved, String>) {
+        self.saving -= 1;
         match result {
             Ok(saved) => {
                 let path = saved.path.display();

@@ -7,12 +7,14 @@ use std::time::{Duration, Instant};
 
 use super::event::Event;
 use super::look::Look;
+use super::save;
 use super::studio::Studio;
 
 /// What the thread is told to do.
 enum Order {
     Draw(Look),
     Tell(Look, [u32; 2]),
+    Save(Look),
 }
 
 /// The thread. It is left alone when the viewer ends.
@@ -47,6 +49,11 @@ impl Worker {
         let _ = self.orders.send(Order::Tell(look, pixel));
     }
 
+    /// A frame is to be written, whatever is wanted later.
+    pub(super) fn save(&self, look: Look) {
+        let _ = self.orders.send(Order::Save(look));
+    }
+
     /// What has been done since; `Err` where the thread is no more.
     pub(super) fn next(&self) -> Result<Option<Event>, ()> {
         match self.events.try_recv() {
@@ -65,14 +72,16 @@ impl Worker {
     }
 }
 
-/// Does what is asked for, until nobody asks: of frames the last one, and of histories.
+/// Does what is asked for, until nobody asks: of frames the last one, and of histories; all
+/// that is to be written.
 fn work(studio: &Studio, orders: &Receiver<Order>, done: &Sender<Event>) {
     while let Ok(first) = orders.recv() {
-        let (mut frame, mut pixel) = (None, None);
+        let (mut frame, mut pixel, mut saves) = (None, None, Vec::new());
         for order in std::iter::once(first).chain(orders.try_iter()) {
             match order {
                 Order::Draw(look) => frame = Some(look),
                 Order::Tell(look, at) => pixel = Some((look, at)),
+                Order::Save(look) => saves.push(look),
             }
         }
         let drawn = frame.map(|look| Event::Drawn {
@@ -85,7 +94,10 @@ fn work(studio: &Studio, orders: &Receiver<Order>, done: &Sender<Event>) {
         let told = pixel.map(|(look, at)| {
             Event::Told(studio.history(&look, at).map_err(|why| why.to_string()))
         });
-        for event in drawn.into_iter().chain(told) {
+        let saved = saves
+            .iter()
+            .map(|look| save::event(studio, studio.draw(look)));
+        for event in drawn.into_iter().chain(told).chain(saved) {
             if done.send(event).is_err() {
                 return;
             }

@@ -94,11 +94,25 @@ fn pictures_that_cannot_be_had_are_warnings() {
 
 #[test]
 fn coordinates_that_are_wrong_are_zeros_and_told() {
-    let faces = "f 1/1 2/99 3/x\n";
-    let found = read(faces, LIBRARY);
-    assert_eq!(found.coordinates, [[[0.0, 1.0]; 3]]);
-    assert_eq!(found.warnings[0].code, "bad-coordinates");
-    assert!(found.warnings[0].message.contains("vt 99 of 4"));
+    let faces = "f 1/1 2/99 3/\n";
+    for (corner, what) in [
+        ("/99", "vt 99 of 4"),
+        ("/x", "'2/x' in line"),
+        ("/0", "'2/0'"),
+        ("/-5", "'2/-5'"),
+    ] {
+        let found = read(&format!("f 1/1 2{corner} 3/\n"), LIBRARY);
+        assert_eq!(found.coordinates, [[[0.0, 1.0]; 3]], "{corner}");
+        let warning = &found.warnings[0];
+        assert_eq!(
+            (warning.code, warning.count),
+            ("bad-coordinates", 1),
+            "{corner}"
+        );
+        assert!(warning.message.contains(what), "{}", warning.message);
+    }
+    let counted = read("f 1/-4 2/-3 3/-2\n", LIBRARY);
+    assert_eq!(counted.warnings, []);
     // Nobody looks at them without a picture.
     assert_eq!(read(faces, "newmtl wood\n").warnings, []);
 }

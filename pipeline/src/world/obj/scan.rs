@@ -156,7 +156,7 @@ impl Scan {
         for texel in &mut self.corner_texels {
             if *texel >= count {
                 (self.bad_texels).add(|| format!("vt {} of {count}", *texel + 1));
-                *texel = -1;
+                *texel = NO_TEXEL;
             }
         }
     }
@@ -165,7 +165,11 @@ impl Scan {
         let before = self.corners.len();
         for word in rest.split_whitespace() {
             self.corners.push(corner(word, self.points.len())?);
-            self.corner_texels.push(texel(word, self.texels.len()));
+            let at = texel(word, self.texels.len());
+            if at.is_none() {
+                (self.bad_texels).add(|| format!("'{word}' in line {line}"));
+            }
+            self.corner_texels.push(at.unwrap_or(NO_TEXEL));
         }
         let corners = self.corners.len() - before;
         if corners < 3 {
@@ -223,15 +227,19 @@ fn corner(word: &str, vertices: usize) -> Result<u32, ObjProblem> {
     u32::try_from(absolute).map_err(|_| too_far)
 }
 
-/// The place of a corner's texture coordinates after that many `texels`; below 0 where it
-/// has none.
-fn texel(word: &str, texels: usize) -> i64 {
-    let index: i64 = match word.split('/').nth(1).map(str::parse) {
-        Some(Ok(index)) => index,
-        _ => return -1,
+/// Of a corner without texture coordinates.
+const NO_TEXEL: i64 = -1;
+
+/// The place of a corner's texture coordinates after that many `texels`, which may be too
+/// high; `None` where the word says nothing that can be.
+fn texel(word: &str, texels: usize) -> Option<i64> {
+    let index: i64 = match word.split('/').nth(1) {
+        None | Some("") => return Some(NO_TEXEL),
+        Some(index) => index.parse().ok()?,
     };
     match index {
-        1.. => index - 1,
-        _ => index.saturating_add(if index < 0 { texels as i64 } else { -1 }),
+        1.. => Some(index - 1),
+        0 => None,
+        _ => index.checked_add(texels as i64).filter(|at| *at >= 0),
     }
 }

@@ -2,8 +2,9 @@
 
 use super::{Bench, step};
 use crate::overlay::OverlayKind;
-use crate::verbs::view::event::{Action, Effect, Event};
+use crate::verbs::view::event::{Action, Effect, Event, Saved};
 use crate::verbs::view::look::Look;
+use crate::verbs::view::save::save;
 use crate::verbs::view::state::Mode;
 
 const SCENE: &str = "cylinder --technique shadow-volumes";
@@ -167,19 +168,49 @@ fn drafts_stand_for_frames_that_take_long_until_nobody_moves() {
 #[test]
 fn what_is_written_is_the_whole_frame_that_is_looked_at() {
     let mut bench = Bench::started(SCENE, [20, 12]);
-    assert_eq!(bench.ask(Action::Save), [Effect::Save]);
+    let home = bench.state.look.clone();
+    assert_eq!(bench.ask(Action::Save), [Effect::Save(home)]);
     bench.state.shown.as_mut().unwrap().ms = 100.0;
     let draft = bench.ask(step(1, 0));
-    let whole = bench.ask(Action::Save);
-    assert_eq!(wanted(&whole), bench.state.look);
-    let take = |bench: &mut Bench, effects: &[Effect]| {
-        let look = wanted(effects);
-        let result = Ok(Box::new(bench.studio.draw(&look).unwrap()));
-        bench.state.update(Event::Drawn { look, result })
+    assert_ne!(wanted(&draft).size, bench.state.look.size);
+    let there = bench.state.look.clone();
+    assert_eq!(bench.ask(Action::Save), [Effect::Save(there)]);
+    assert!(bench.state.notice[0].contains("drawing"));
+    // Whoever goes on keeps what was looked at, and is awaited.
+    bench.press(step(1, 0));
+    assert_eq!(bench.state.saving, 2);
+    let saved = |bench: &mut Bench, result| bench.state.update(Event::Saved(result));
+    let written = Saved {
+        path: "a.png".into(),
+        command: "gnomon".into(),
     };
-    assert_eq!(take(&mut bench, &draft), []);
-    assert_eq!(take(&mut bench, &whole), [Effect::Save]);
-    assert_eq!(take(&mut bench, &whole), [], "once");
+    assert_eq!(saved(&mut bench, Ok(written.clone())), []);
+    assert_eq!(saved(&mut bench, Err("full".into())), []);
+    assert_eq!(
+        (bench.state.saving, &bench.state.saved[..]),
+        (0, &[written][..])
+    );
+    assert_eq!(bench.state.notice, ["full"]);
+}
+
+/// A frame that a thread draws is written though the viewer has gone on, under names of
+/// which none is taken.
+#[test]
+fn nothing_that_is_there_is_written_over() {
+    let mut bench = Bench::started("cylinder --technique soft-shadow-volumes", [20, 12]);
+    bench.press(Action::Overlay(1));
+    let kind = bench.state.look.overlay.unwrap().name();
+    let drawn = bench.state.shown.take().unwrap();
+    let folder = std::env::temp_dir().join(format!("gnomon-view-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let name = |n: u32| format!("cylinder-soft-shadow-volumes-view-{n}");
+    let theirs = folder.join(format!("{}-{kind}.png", name(1)));
+    std::fs::write(&theirs, b"theirs").unwrap();
+    let path = save(&bench.studio, &drawn, &folder).unwrap().path;
+    assert_eq!(path, folder.join(format!("{}.png", name(2))));
+    assert!(folder.join(format!("{}-{kind}.png", name(2))).exists());
+    assert_eq!(std::fs::read(&theirs).unwrap(), b"theirs");
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

@@ -76,7 +76,7 @@ impl Bench {
                     let told = self.studio.history(&look, pixel);
                     Event::Told(told.map_err(|e| e.to_string()))
                 }
-                Effect::Save | Effect::Quit => continue,
+                Effect::Save(_) | Effect::Quit => continue,
             };
             let more = self.state.update(event);
             self.answer(more);

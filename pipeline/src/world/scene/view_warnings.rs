@@ -57,7 +57,8 @@ impl Scene {
         let coarse = objects.filter_map(|(object, depths)| {
             let depth = depths.filter(|[_, far]| *far > near)?[0].max(near);
             let step = depth * depth / (near * STEPS);
-            let size = size(object)?;
+            // What an animation has shrunk to a point hides nothing.
+            let size = size(object).filter(|size| *size > 0.0)?;
             (step > COARSEST * size).then_some((object, depth, step, size))
         });
         let coarse: Vec<_> = coarse.collect();
@@ -87,7 +88,9 @@ fn size(object: &Object) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::mesh::Shading;
     use crate::world::scene::builtin;
+    use crate::world::shape::Shape;
 
     const SIZE: [u32; 2] = [160, 120];
 
@@ -137,5 +140,14 @@ mod tests {
         assert_eq!(codes(&scene), [""; 0], "{named}");
         scene.camera.near = named / 4.0;
         assert_eq!(codes(&scene), ["coarse-depth"], "{named}");
+        for object in scene.objects.iter_mut().filter(|o| o.casts) {
+            let point = glam::DVec3::ONE;
+            let shape = Shape {
+                positions: vec![point; 3],
+                triangles: vec![[0, 1, 2]],
+            };
+            object.mesh = shape.into_mesh(Shading::Flat).unwrap().into();
+        }
+        assert_eq!(codes(&scene), [""; 0]);
     }
 }

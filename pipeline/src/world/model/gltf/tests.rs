@@ -964,6 +964,9 @@ fn nodes_move_with_the_first_animation() {
     assert_eq!(low(0.5, &[("/nodes", child)]), DVec3::new(1.0, 0.0, 5.0));
     let scaled = [("/animations/0/channels/0/target/path", json!("scale"))];
     assert_eq!(moving_at(&scaled, 1.5).unwrap().bounds().unwrap().1.x, 3.0);
+    // A node of no size is still there.
+    let point = moving_at(&scaled, 0.0).unwrap();
+    assert_eq!(point.bounds().unwrap(), (DVec3::ZERO, DVec3::ZERO));
     let still = read(&file()).unwrap();
     assert!(!still.moves);
 }

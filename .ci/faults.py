@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Switches faults on, one after the other, and says which tests see them.
 
-    python3 .ci/faults.py [--list baselines|thesis|maps|tools|lines] [--only N,N] [--folder DIR]
+    python3 .ci/faults.py [--list baselines|thesis|maps|tools|lines|scenes] [--only N,N] [--folder DIR]
 
 A copy of the tree gets all faults at once, each behind a number that the environment
 variable GNOMON_FAULT chooses; so it is built once (ten minutes on two cores) and each fault
@@ -22,12 +22,12 @@ import threading
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # beside the lists
-from fault_lists import baselines, lines, maps, thesis, tools  # noqa: E402
+from fault_lists import baselines, lines, maps, scenes, thesis, tools  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 SHADERS = "shaders-rs/src/"
 LISTS = {"baselines": baselines.FAULTS, "thesis": thesis.FAULTS, "maps": maps.FAULTS,
-         "tools": tools.FAULTS, "lines": lines.FAULTS}
+         "tools": tools.FAULTS, "lines": lines.FAULTS, "scenes": scenes.FAULTS}
 FAULTS = [fault for faults in LISTS.values() for fault in faults]
 
 SWITCH = """

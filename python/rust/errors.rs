@@ -42,7 +42,6 @@ pub(crate) fn raise_render(error: RenderError) -> PyErr {
     match error {
         RenderError::Gpu(error) => raise(error),
         RenderError::Technique(error) => raise_technique(error),
-        other => raise(other),
     }
 }
 

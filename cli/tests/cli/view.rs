@@ -1,9 +1,10 @@
 //! `gnomon view` on a terminal that `script` makes, and without one.
 
-use std::io::Write;
+use std::io::{Read, Write};
 use std::process::{Command, Stdio};
-use std::thread::sleep;
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
+use std::thread::{sleep, spawn};
+use std::time::{Duration, Instant};
 
 use crate::common::Folder;
 
@@ -20,9 +21,9 @@ fn without_a_terminal_it_says_what_to_do() {
     assert!(folder.names().is_empty());
 }
 
-/// What `gnomon view` sends to a terminal while `keys` are pressed, or it is sent a signal by
-/// a command that begins with `kill`, and what is said behind it: the exit code, and whether the terminal echoes again. `None` where there is no
-/// `script`.
+/// What `gnomon view` sends to a terminal while `keys` are pressed, and what is said behind
+/// it: the exit code, and whether the terminal echoes again. A key that begins with `kill` is
+/// a command that sends it a signal. `None` where there is no `script`.
 fn seen(folder: &Folder, flags: &str, keys: &[&str]) -> Option<String> {
     let line = format!(
         "stty rows 20 cols 80; sh -c 'echo $$ >pid; exec \"$0\" view cylinder {flags}' '{}'; \
@@ -41,27 +42,39 @@ fn seen(folder: &Folder, flags: &str, keys: &[&str]) -> Option<String> {
         return None;
     };
     let mut stdin = script.stdin.take().unwrap();
+    let mut stdout = script.stdout.take().unwrap();
+    let shown = Arc::new(Mutex::new(Vec::<u8>::new()));
+    let text = || String::from_utf8_lossy(&shown.lock().unwrap()).into_owned();
+    let sent = Arc::clone(&shown);
+    let reader = spawn(move || {
+        let mut part = [0; 4096];
+        while let Ok(count @ 1..) = stdout.read(&mut part) {
+            sent.lock().unwrap().extend_from_slice(&part[..count]);
+        }
+    });
     for key in keys {
         // The frame between keys may not be there yet; none depends on that.
         sleep(Duration::from_millis(700));
         if key.starts_with("kill") {
+            // Keys wait for a viewer that is slow to start; signals would end it.
+            let start = Instant::now();
+            while !text().contains(ENTER) {
+                assert!(start.elapsed() < Duration::from_secs(120), "{}", text());
+                sleep(Duration::from_millis(10));
+            }
             let pid = std::fs::read_to_string(folder.path("pid")).unwrap();
-            let (shell, line) = ("sh", format!("{key} {pid}"));
-            assert!(
-                Command::new(shell)
-                    .args(["-c", &line])
-                    .status()
-                    .unwrap()
-                    .success()
-            );
+            let line = format!("{key} {pid}");
+            let kill = Command::new("sh").args(["-c", &line]).status();
+            assert!(kill.unwrap().success(), "{line}");
             continue;
         }
         stdin.write_all(key.as_bytes()).unwrap();
         stdin.flush().unwrap();
     }
-    let output = script.wait_with_output().unwrap();
+    script.wait_with_output().unwrap();
     drop(stdin);
-    Some(String::from_utf8_lossy(&output.stdout).into_owned())
+    reader.join().unwrap();
+    Some(text())
 }
 
 const ENTER: &str = "\u{1b}[?1049h";
@@ -116,6 +129,20 @@ fn signals_give_the_terminal_back() {
         let after = afterwards(&seen);
         assert!(after.contains(&format!("code={code}")), "{after}");
     }
+}
+
+/// Whoever has left waits for what is being written, unless a signal says not to.
+#[test]
+fn signals_end_the_wait_for_pictures() {
+    let folder = Folder::new("view-signals-late");
+    let slow = "--technique sampled-shadow-volumes:samples=4096 --size 2400x1800";
+    let Some(seen) = seen(&folder, slow, &["s", "q", "", "kill -TERM"]) else {
+        return;
+    };
+    let after = afterwards(&seen);
+    assert!(after.contains("code=143"), "{after}");
+    assert!(!after.contains("wrote"), "{after}");
+    assert!(!folder.path("out").exists());
 }
 
 /// A frame that cannot be had is said on the screen; the terminal is given back all the same.

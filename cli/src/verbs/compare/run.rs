@@ -27,11 +27,8 @@ pub(crate) fn run(args: &CompareArgs, registry: &Registry) -> Result<(), CliErro
     let job = CompareJob::new(args, registry)?;
     let progress = Progress::new(job.steps());
     let mut pause = Pause::default();
-    // What is written too early may fail: the whole picture says so if it does.
-    let mut grown = |found: &Comparison| {
-        let _ = pause.unless_too_soon(|| write_picture(&job, found));
-        Ok(())
-    };
+    // Where it cannot be written yet the whole picture may be, or says why not.
+    let mut grown = |found: &Comparison| pause.unless_too_soon(|| write_picture(&job, found));
     let found = measure::run(&job, &progress, &mut grown)?;
     progress.doing("writing the picture");
     write_picture(&job, &found)?;

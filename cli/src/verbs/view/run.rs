@@ -159,13 +159,14 @@ impl Viewer {
         Ok(())
     }
 
-    /// Until what was to be written is.
+    /// Until what was to be written is, or a signal says that nobody wants it any more.
     fn wait_for_pictures(&mut self) {
         let mut events = Vec::new();
         while self.state.saving > 0 && self.finished(&mut events).is_ok() {
             for event in events.drain(..) {
                 self.state.update(event);
             }
+            self.signals.end();
             std::thread::sleep(TICK);
         }
     }

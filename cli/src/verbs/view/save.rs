@@ -2,6 +2,7 @@
 
 use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use super::event::{Event, Saved};
 use super::studio::{Drawn, Studio};
@@ -23,6 +24,9 @@ pub(super) fn event(studio: &Studio, drawn: Result<impl Borrow<Drawn>, CliError>
 
 /// Writes the frame, and what explains it, into `folder` under names that nothing has yet.
 pub(super) fn save(studio: &Studio, drawn: &Drawn, folder: &Path) -> Result<Saved, CliError> {
+    // The thread that draws saves as well: a name is free only until its file is there.
+    static ALONE: Mutex<()> = Mutex::new(());
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let path = new_name(folder, drawn);
     let written =
         |picture: &Picture| png_of(picture, &drawn.scene, &drawn.params, (&drawn.done, 1));

@@ -1,5 +1,8 @@
 //! What is asked for, and what becomes of it.
 
+use std::sync::Barrier;
+use std::thread::scope;
+
 use super::{Bench, step};
 use crate::overlay::OverlayKind;
 use crate::verbs::view::event::{Action, Effect, Event, Saved};
@@ -210,6 +213,32 @@ fn nothing_that_is_there_is_written_over() {
     assert_eq!(path, folder.join(format!("{}.png", name(2))));
     assert!(folder.join(format!("{}-{kind}.png", name(2))).exists());
     assert_eq!(std::fs::read(&theirs).unwrap(), b"theirs");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// The viewer and the thread that draws may write at once.
+#[test]
+fn pictures_that_are_written_at_once_have_names_of_their_own() {
+    const WRITERS: usize = 4;
+    let bench = Bench::started(SCENE, [20, 12]);
+    let (studio, look) = (&bench.studio, &bench.state.look);
+    let name = format!("gnomon-view-at-once-{}", std::process::id());
+    let folder = std::env::temp_dir().join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    let together = Barrier::new(WRITERS);
+    let write = || {
+        let drawn = studio.draw(look).unwrap();
+        together.wait();
+        save(studio, &drawn, &folder).unwrap().path
+    };
+    let mut paths: Vec<_> = scope(|s| {
+        let writers: Vec<_> = (0..WRITERS).map(|_| s.spawn(write)).collect();
+        writers.into_iter().map(|w| w.join().unwrap()).collect()
+    });
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths.len(), WRITERS);
+    assert!(paths.iter().all(|p| p.exists()));
     std::fs::remove_dir_all(&folder).unwrap();
 }
 

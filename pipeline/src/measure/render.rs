@@ -208,7 +208,8 @@ fn run(
     gpu.load(&frame.recording)?;
     let mut times = Times::measure(&mut gpu, &frame, settings.repeat)?;
     times.build = build_ms;
-    let left = left_behind(&gpu, &frame.keep)?;
+    let mut left = left_behind(&gpu, &frame.keep)?;
+    left.work = frame.work.clone();
     let sizes = (settings.size, side);
     Ok((read_back(&gpu, scene, frame, sizes, times)?, left))
 }

@@ -25,8 +25,8 @@ use super::passes::{LitTest, SceneDraws, Targets, label};
 use super::view::View;
 use super::visibility::Positions;
 use crate::technique::{
-    CasterUse, Figure, Frame, Outputs, Pass, PassRole, TechniqueError, VisibilityOutput, Warning,
-    apart,
+    CasterUse, Figure, Frame, KeptWork, Outputs, Pass, PassRole, TechniqueError, VisibilityOutput,
+    Warning, apart,
 };
 use crate::world::light::Light;
 use crate::world::scene::{Object, Scene};
@@ -277,6 +277,7 @@ impl<'a> ShadowedFrame<'a> {
             casters: self.notes.casters,
             figures: self.notes.figures,
             keep: Vec::new(),
+            work: KeptWork::default(),
         })
     }
 }

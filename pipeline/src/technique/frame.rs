@@ -2,7 +2,7 @@
 
 use gnomon_raster::{Recording, TextureId};
 
-use super::kept::PictureToKeep;
+use super::kept::{KeptWork, PictureToKeep};
 use super::pass::Roles;
 use crate::world::scene::SceneWarning;
 
@@ -29,6 +29,8 @@ pub struct Frame {
     pub figures: Vec<Figure>,
     /// What the next frame of an animation may need of this one.
     pub keep: Vec<PictureToKeep>,
+    /// The same of what was worked out for it.
+    pub work: KeptWork,
 }
 
 /// A number that a technique chose, to be reported with its results.

@@ -1,9 +1,12 @@
 //! What a frame of an animation leaves for the next one.
 //!
 //! A picture is known by everything that it was drawn from. Where the next frame would
-//! draw it from the same again, its texels are there already: fewer draws, equal bits.
+//! draw it from the same again, its texels are there already: fewer draws, equal bits. The
+//! same with what a technique works out before it draws.
 
+use std::any::Any;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::Arc;
 
 use gnomon_raster::TextureId;
@@ -11,10 +14,51 @@ use gnomon_raster::TextureId;
 /// Hash of everything that a picture was drawn from.
 pub type PictureKey = [u8; 32];
 
-/// Pictures of the frame before; none before the first.
+/// What the frame before left: pictures, and what its technique worked out; nothing before
+/// the first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KeptPictures {
     pictures: BTreeMap<PictureKey, Arc<[u8]>>,
+    /// What the technique worked out.
+    pub work: KeptWork,
+}
+
+/// What a technique worked out on the CPU for a frame, and may find again in the next one.
+/// Its kind is known to the technique alone.
+#[derive(Clone, Default)]
+pub struct KeptWork(Option<Arc<dyn Any + Send + Sync>>);
+
+impl KeptWork {
+    /// Keeps `work`.
+    pub fn of<T: Any + Send + Sync>(work: T) -> Self {
+        Self(Some(Arc::new(work)))
+    }
+
+    /// What was kept, if it is a `T`.
+    #[must_use]
+    pub fn find<T: Any + Send + Sync>(&self) -> Option<&T> {
+        self.0.as_ref()?.downcast_ref()
+    }
+}
+
+impl PartialEq for KeptWork {
+    /// The very same.
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+}
+
+impl fmt::Debug for KeptWork {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() {
+            "KeptWork"
+        } else {
+            "nothing"
+        })
+    }
 }
 
 /// A square of a colour texture, at mip 0, layer 0, that the next frame may need.

@@ -21,7 +21,7 @@ pub use capabilities::{Capabilities, LightKinds, ShadowKind, Source, WedgeUse};
 pub use condition::{Condition, LightFact};
 pub use domain::{Decimals, Domain, Value, Whole};
 pub use frame::{CasterUse, Figure, Frame, Outputs, VisibilityOutput, VolumeMethod, Warning};
-pub use kept::{KeptPictures, PictureKey, PictureToKeep};
+pub use kept::{KeptPictures, KeptWork, PictureKey, PictureToKeep};
 pub use nested::Nested;
 pub use param::{Choice, Number, Param, ParamInfo, Setting, count, join};
 pub use params::{LIGHT_FRAME, Params, SETTING_WITHOUT_EFFECT};

@@ -24,6 +24,7 @@ mod horizon;
 mod libm_bits;
 mod light_colors;
 mod light_images;
+mod line_lists_kept;
 mod line_samples;
 mod lit_tiles;
 mod map_support;

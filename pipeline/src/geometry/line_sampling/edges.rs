@@ -64,6 +64,8 @@ pub struct LineCasters {
     pub facets: Vec<Facet>,
     /// All edges between planes.
     pub edges: Vec<ContourEdge>,
+    /// How many edges there are up to the end of each caster.
+    pub ends: Vec<u32>,
 }
 
 impl LineCasters {
@@ -92,6 +94,7 @@ impl LineCasters {
             };
             self.push_edge(ends, walk(true), walk(false), both);
         }
+        self.ends.push(self.edges.len() as u32);
         first
     }
 
@@ -125,6 +128,12 @@ impl LineCasters {
                 });
             }
         }
+    }
+
+    /// How many of some edges there are up to the end of each caster; their numbers ascend.
+    pub fn ends_of(&self, numbers: &[u32]) -> Vec<u32> {
+        let up_to = |end: &u32| numbers.partition_point(|n| n < end) as u32;
+        self.ends.iter().map(up_to).collect()
     }
 
     /// Numbers of the edges that may be met on the way to the light whose hull has these

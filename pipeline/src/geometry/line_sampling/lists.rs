@@ -11,18 +11,27 @@
 //!   instead of once a pixel; docs/papers.md, paper II).
 //!
 //! All tests keep more than rounding apart, so what is left out changes no bit.
+//!
+//! Each caster's edges are gone through by themselves. What is left of them for a square of
+//! the first level depends on that caster, the light and the square's receivers alone, and
+//! is kept from frame to frame ([`super::kept_lists`]).
+
+use std::cell::OnceCell;
+use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::blocks::BlockBounds;
 use super::edges::{ContourEdge, NONE};
+use super::kept_lists::{KeptLists, Keys};
 use super::light::LineLight;
 use super::patches::Plane;
 use super::shaft::{Bounds, Shaft};
 
 /// Blocks along a side of the squares of each level.
-const LEVELS: [u32; 3] = [8, 2, 1];
+pub(super) const LEVELS: [u32; 3] = [8, 2, 1];
 /// Edges of a cluster.
 const CLUSTER: usize = 32;
 /// What counts as rounding, as a share of the largest coordinate.
@@ -63,9 +72,17 @@ pub struct Culling<'a> {
     edges: &'a [ContourEdge],
     planes: &'a [Plane],
     light: &'a LineLight,
-    /// The largest coordinate of all that is tested.
+    /// No less than the largest coordinate of all that is tested: a power of two, which
+    /// stays when something moves a little.
     largest: f64,
-    /// Edges in clusters, and the boxes of these.
+    groups: Vec<Group>,
+}
+
+/// The edges of one caster.
+struct Group {
+    /// Their numbers.
+    edges: Range<u32>,
+    /// The same in clusters, and the boxes of these.
     clusters: Vec<(Bounds, Vec<u32>)>,
 }
 
@@ -79,75 +96,132 @@ struct Square {
 }
 
 impl<'a> Culling<'a> {
-    /// Of candidate `edges`, whose facets have `planes`.
-    pub fn new(edges: &'a [ContourEdge], planes: &'a [Plane], light: &'a LineLight) -> Self {
+    /// Of candidate `edges`, whose facets have `planes`. `ends` is how many there are up to
+    /// the end of each caster.
+    pub fn new(
+        (edges, ends): (&'a [ContourEdge], &[u32]),
+        planes: &'a [Plane],
+        light: &'a LineLight,
+    ) -> Self {
         let bounds = Bounds::of(edges.iter().flat_map(|e| e.ends));
         let lit = Bounds::of(light.corners(1.0));
         let largest = if edges.is_empty() {
             0.0
         } else {
-            bounds.joined(&lit).largest()
+            power_above(bounds.joined(&lit).largest())
         };
         Self {
             edges,
             planes,
             light,
             largest,
-            clusters: clusters(edges, &bounds),
+            groups: groups(edges, ends),
         }
+    }
+
+    /// What counts as the largest coordinate.
+    pub(super) fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    /// The light.
+    pub(super) fn light(&self) -> &LineLight {
+        self.light
+    }
+
+    /// Of each caster its edges, with the planes of their facets.
+    pub(super) fn casters(&self) -> impl IndexedParallelIterator<Item = &[ContourEdge]> {
+        let of = |g: &Group| &self.edges[g.edges.start as usize..g.edges.end as usize];
+        self.groups.par_iter().map(of)
+    }
+
+    /// A plane.
+    pub(super) fn plane(&self, number: u32) -> Option<&Plane> {
+        self.planes.get(number as usize)
     }
 
     /// The lists of all blocks.
     pub fn lists(&self, blocks: &BlockBounds) -> BlockLists {
-        let [across, down] = blocks.size.map(|n| n.div_ceil(LEVELS[0]));
-        let squares: Vec<[u32; 2]> = (0..down)
-            .flat_map(|y| (0..across).map(move |x| [x * LEVELS[0], y * LEVELS[0]]))
-            .collect();
-        let parts: Vec<Part> = squares
-            .par_iter()
-            .map(|at| {
-                let mut part = Part::default();
-                self.descend(blocks, *at, None, &mut part);
-                part
-            })
-            .collect();
-        assemble(blocks.size, parts)
+        let parts = squares_of(blocks).into_par_iter().map(|at| {
+            let squares = Squares::new(self, blocks, at);
+            let of = |group| Arc::new(self.part(&squares, group));
+            (at, self.groups.iter().map(of).collect())
+        });
+        let parts: Vec<Parts> = parts.collect();
+        let tests = parts.iter().flat_map(|(_, parts)| parts).map(|p| p.tests);
+        self.assemble(blocks.size, tests.sum(), &parts)
     }
 
-    /// The list of a square from that around it, and those in it.
+    /// The same after another frame of an animation: what is as it was there is not made
+    /// again, nor counted as tests. The second is what the next frame may need.
+    pub fn lists_after(&self, blocks: &BlockBounds, before: &KeptLists) -> (BlockLists, KeptLists) {
+        let keys = Keys::new(self);
+        let known = before.of(&keys);
+        let made = squares_of(blocks).into_par_iter().map(|at| {
+            let squares = Squares::new(self, blocks, at);
+            let key = Keys::of_square(blocks, at);
+            let mut tests = 0;
+            let of = |(group, known): (&Group, &super::kept_lists::OfCaster<'_>)| {
+                if let Some(part) = known.and_then(|k| k.get(&key)) {
+                    return part.clone();
+                }
+                let part = self.part(&squares, group);
+                tests += part.tests;
+                Arc::new(part)
+            };
+            let parts: Vec<Arc<Part>> = self.groups.iter().zip(&known).map(of).collect();
+            ((at, parts), (key, tests))
+        });
+        let (parts, made): (Vec<Parts>, Vec<_>) = made.unzip();
+        let tests = made.iter().map(|(_, tests)| tests).sum();
+        let own = parts.iter().zip(&made);
+        let kept = KeptLists::new(&keys, own.map(|((_, parts), (key, _))| (*key, &parts[..])));
+        (self.assemble(blocks.size, tests, &parts), kept)
+    }
+
+    /// What is left of a caster's edges in a square of the first level.
+    fn part(&self, squares: &Squares<'_>, group: &Group) -> Part {
+        let mut part = Part::default();
+        self.descend(squares, [0, 0], 0, None, group, &mut part);
+        for list in part.lists.iter_mut().flat_map(|(_, list)| list) {
+            *list -= group.edges.start;
+        }
+        part
+    }
+
+    /// The list of a square of a level from that around it, and those in it.
     fn descend(
         &self,
-        blocks: &BlockBounds,
+        squares: &Squares<'_>,
         at: [u32; 2],
-        around: Option<(usize, &[u32])>,
+        level: usize,
+        around: Option<&[u32]>,
+        group: &Group,
         part: &mut Part,
     ) {
-        let (level, list) = around.map_or((0, None), |(level, list)| (level, Some(list)));
-        let side = LEVELS[level];
-        let bounds = blocks.square(at, side);
-        if bounds.is_empty() {
+        let Some(square) = squares.get(level, at) else {
             return;
-        }
-        let square = self.square(bounds);
-        let own = match list {
-            None => self.of_clusters(&square, &mut part.tests),
+        };
+        let own = match around {
+            None => self.of_clusters(square, &group.clusters, &mut part.tests),
             Some(list) => {
                 part.tests += list.len() as u64;
-                let kept = list.iter().filter(|e| !self.is_out(**e, &square));
+                let kept = list.iter().filter(|e| !self.is_out(**e, square));
                 kept.copied().collect()
             }
         };
         if own.is_empty() {
             return;
         }
+        let side = LEVELS[level];
         if side == 1 {
-            part.lists.push((at[1] * blocks.size[0] + at[0], own));
+            part.lists.push((at, own));
             return;
         }
-        let inner = LEVELS[level + 1];
-        for y in (at[1]..(at[1] + side).min(blocks.size[1])).step_by(inner as usize) {
-            for x in (at[0]..(at[0] + side).min(blocks.size[0])).step_by(inner as usize) {
-                self.descend(blocks, [x, y], Some((level + 1, &own)), part);
+        let inner = LEVELS[level + 1] as usize;
+        for y in (at[1]..at[1] + side).step_by(inner) {
+            for x in (at[0]..at[0] + side).step_by(inner) {
+                self.descend(squares, [x, y], level + 1, Some(&own), group, part);
             }
         }
     }
@@ -170,9 +244,14 @@ impl<'a> Culling<'a> {
         }
     }
 
-    fn of_clusters(&self, square: &Square, tests: &mut u64) -> Vec<u32> {
+    fn of_clusters(
+        &self,
+        square: &Square,
+        clusters: &[(Bounds, Vec<u32>)],
+        tests: &mut u64,
+    ) -> Vec<u32> {
         let mut kept = Vec::new();
-        for (bounds, own) in &self.clusters {
+        for (bounds, own) in clusters {
             *tests += 1;
             if square.shaft.as_ref().is_some_and(|s| s.misses_box(bounds)) {
                 continue;
@@ -243,40 +322,116 @@ fn is_beside(edge: &ContourEdge, square: &Square) -> bool {
     true
 }
 
-/// What one square of the first level has.
-#[derive(Default)]
-struct Part {
-    lists: Vec<(u32, Vec<u32>)>,
+/// What one caster has in a square of the first level.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Part {
+    /// Column and row of blocks in the square, and their edges, from the caster's first on.
+    pub(super) lists: Vec<([u32; 2], Vec<u32>)>,
     tests: u64,
 }
 
-fn assemble(size: [u32; 2], parts: Vec<Part>) -> BlockLists {
-    let count = (size[0] * size[1]) as usize;
-    let mut lists: Vec<Vec<u32>> = vec![Vec::new(); count];
-    let mut tests = 0;
-    for part in parts {
-        tests += part.tests;
-        for (block, list) in part.lists {
-            lists[block as usize] = list;
+/// A square of the first level, and what each caster has there.
+type Parts = ([u32; 2], Vec<Arc<Part>>);
+
+/// First column and row of blocks of the squares of the first level.
+fn squares_of(blocks: &BlockBounds) -> Vec<[u32; 2]> {
+    let [across, down] = blocks.size.map(|n| n.div_ceil(LEVELS[0]));
+    let row = |y| (0..across).map(move |x| [x * LEVELS[0], y * LEVELS[0]]);
+    (0..down).flat_map(row).collect()
+}
+
+/// A square of the first level and those in it, each made when it is first asked for.
+struct Squares<'a> {
+    culling: &'a Culling<'a>,
+    blocks: &'a BlockBounds,
+    at: [u32; 2],
+    made: [Vec<OnceCell<Option<Square>>>; LEVELS.len()],
+}
+
+impl<'a> Squares<'a> {
+    fn new(culling: &'a Culling<'a>, blocks: &'a BlockBounds, at: [u32; 2]) -> Self {
+        let made = LEVELS.map(|side| {
+            let count = LEVELS[0] / side;
+            (0..count * count).map(|_| OnceCell::new()).collect()
+        });
+        Self {
+            culling,
+            blocks,
+            at,
+            made,
         }
     }
-    let mut starts = Vec::with_capacity(count + 1);
-    let mut entries = Vec::new();
-    starts.push(0);
-    for list in lists {
-        entries.extend(list);
-        starts.push(entries.len() as u32);
-    }
-    BlockLists {
-        size,
-        starts,
-        entries,
-        tests,
+
+    /// The square at a column and row of blocks in that of the first level, if there are
+    /// receivers.
+    fn get(&self, level: usize, at: [u32; 2]) -> Option<&Square> {
+        let side = LEVELS[level];
+        let number = at[1] / side * (LEVELS[0] / side) + at[0] / side;
+        let make = || {
+            let place = [0, 1].map(|a| self.at[a] + at[a]);
+            let bounds = self.blocks.square(place, side);
+            (!bounds.is_empty()).then(|| self.culling.square(bounds))
+        };
+        self.made[level][number as usize].get_or_init(make).as_ref()
     }
 }
 
+impl Culling<'_> {
+    fn assemble(&self, size: [u32; 2], tests: u64, parts: &[Parts]) -> BlockLists {
+        let count = (size[0] * size[1]) as usize;
+        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for (at, parts) in parts {
+            for (group, part) in self.groups.iter().zip(parts) {
+                for ([x, y], list) in &part.lists {
+                    let block = (at[1] + y) * size[0] + at[0] + x;
+                    let numbers = list.iter().map(|e| e + group.edges.start);
+                    lists[block as usize].extend(numbers);
+                }
+            }
+        }
+        let mut starts = Vec::with_capacity(count + 1);
+        let mut entries = Vec::new();
+        starts.push(0);
+        for list in lists {
+            entries.extend(list);
+            starts.push(entries.len() as u32);
+        }
+        BlockLists {
+            size,
+            starts,
+            entries,
+            tests,
+        }
+    }
+}
+
+/// The next power of two above a number that is not negative.
+fn power_above(number: f64) -> f64 {
+    const MANTISSA: u64 = (1 << f64::MANTISSA_DIGITS - 1) - 1;
+    let largest = f64::MAX.to_bits() & !MANTISSA;
+    f64::from_bits(((number.to_bits() & !MANTISSA) + MANTISSA + 1).min(largest))
+}
+
+/// The edges of each caster that has any.
+fn groups(edges: &[ContourEdge], ends: &[u32]) -> Vec<Group> {
+    let first = [0].into_iter().chain(ends.iter().copied());
+    let ranges = first.zip(ends).map(|(first, end)| first..*end);
+    let group = |edges_of: Range<u32>| {
+        let own = &edges[edges_of.start as usize..edges_of.end as usize];
+        Group {
+            clusters: clusters(own, edges_of.start),
+            edges: edges_of,
+        }
+    };
+    let some = ranges.filter(|r| !r.is_empty());
+    let some: Vec<Range<u32>> = some.collect();
+    some.into_par_iter().map(group).collect()
+}
+
 /// Edges by where their middles are along a curve through space, so many at a time.
-fn clusters(edges: &[ContourEdge], bounds: &Bounds) -> Vec<(Bounds, Vec<u32>)> {
+/// Numbers begin with `first`.
+fn clusters(edges: &[ContourEdge], first: u32) -> Vec<(Bounds, Vec<u32>)> {
+    let bounds = Bounds::of(edges.iter().flat_map(|e| e.ends));
     let size = (bounds.high - bounds.low).max(DVec3::splat(f64::MIN_POSITIVE));
     let key = |e: &ContourEdge| {
         let place = (0.5 * (e.ends[0] + e.ends[1]) - bounds.low) / size * 1023.0;
@@ -293,7 +448,7 @@ fn clusters(edges: &[ContourEdge], bounds: &Bounds) -> Vec<(Bounds, Vec<u32>)> {
     let numbers: Vec<u32> = order.into_iter().map(|(_, k)| k).collect();
     let cluster = |own: &[u32]| {
         let ends = own.iter().flat_map(|k| edges[*k as usize].ends);
-        (Bounds::of(ends), own.to_vec())
+        (Bounds::of(ends), own.iter().map(|k| first + k).collect())
     };
     numbers.chunks(CLUSTER).map(cluster).collect()
 }

@@ -11,7 +11,8 @@
 //!
 //! * [`light`]: a light as lines
 //! * [`patches`], [`edges`]: what of casters is needed, for each light
-//! * [`blocks`], [`shaft`], [`lists`]: which edges matter to which pixels
+//! * [`blocks`], [`shaft`], [`lists`]: which edges matter to which pixels; [`kept_lists`]: what
+//!   of that the next frame of an animation finds again
 //! * [`walk`]: the rules, in f64, one receiver at a time: the twin of the shader
 //!   `gnomon_shaders::line_samples`
 //!
@@ -23,6 +24,7 @@
 
 pub mod blocks;
 pub mod edges;
+pub mod kept_lists;
 pub mod light;
 pub mod lists;
 pub mod patches;

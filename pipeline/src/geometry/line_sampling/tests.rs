@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::blocks::BlockBounds;
 use super::edges::LineCasters;
+use super::kept_lists::KeptLists;
 use super::light::{ANGLE, Extent, LineLight};
 use super::lists::Culling;
 use super::patches::Patches;
@@ -182,7 +183,8 @@ fn lists_leave_out_what_is_irrelevant() {
             .iter()
             .map(|k| lined.casters.edges[*k as usize])
             .collect();
-        let culling = Culling::new(&edges, &lined.casters.planes, &lined.light);
+        let ends = lined.casters.ends_of(&numbers);
+        let culling = Culling::new((&edges, &ends), &lined.casters.planes, &lined.light);
         let lists = culling.lists(&blocks);
         let alone = rayon::ThreadPoolBuilder::new()
             .num_threads(1)
@@ -212,6 +214,54 @@ fn lists_leave_out_what_is_irrelevant() {
             );
         }
     }
+}
+
+/// What another frame left changes no list, and is not made again where nothing changed.
+#[test]
+fn lists_that_are_kept_are_those_that_are_made() {
+    let (scene, lined) = Lined::of("creature");
+    let blocks = BlockBounds::new(&scene.camera, [160, 120], lined.surfaces.corners());
+    let light = |by: f64| {
+        let mut light = lined.light.clone();
+        light.frame.centre.y += by;
+        light
+    };
+    let of = |lined: &Lined, light: &LineLight, before: &KeptLists| {
+        let LineCasters {
+            edges,
+            ends,
+            planes,
+            ..
+        } = &lined.casters;
+        let culling = Culling::new((edges, ends), planes, light);
+        let alone = culling.lists(&blocks);
+        let (lists, kept) = culling.lists_after(&blocks, before);
+        assert_eq!(
+            (&lists.starts, &lists.entries),
+            (&alone.starts, &alone.entries)
+        );
+        (alone.tests, lists.tests, kept)
+    };
+    let nothing = KeptLists::default();
+    let (all, first, kept) = of(&lined, &light(0.0), &nothing);
+    assert!(first == all && all > 1000, "{first} {all}");
+    let (_, again, _) = of(&lined, &light(0.0), &kept);
+    assert_eq!(again, 0);
+    // Neither another light's nor those of edges elsewhere.
+    let (all, other, _) = of(&lined, &light(0.01), &kept);
+    assert_eq!(other, all);
+    let mut moved = Lined::new(&scene);
+    for end in moved.casters.edges.iter_mut().flat_map(|e| &mut e.ends) {
+        end.x += 0.01;
+    }
+    let (all, other, _) = of(&moved, &light(0.0), &kept);
+    assert_eq!(other, all);
+    let mut turned = Lined::new(&scene);
+    for plane in &mut turned.casters.planes {
+        plane.offset += 1e-9;
+    }
+    let (all, other, _) = of(&turned, &light(0.0), &kept);
+    assert_eq!(other, all);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::settings::LineSettings;
 use super::tables::{self, Kept, SourceFrame};
 use super::{LineFrame, NAME};
 use crate::geometry::line_sampling::edges::{ContourEdge, LineCasters};
+use crate::geometry::line_sampling::kept_lists::KeptLists;
 use crate::geometry::line_sampling::light::{Extent, Line, LineLight, double_area};
 use crate::geometry::line_sampling::lists::{BlockLists, Culling};
 use crate::geometry::line_sampling::shaft::Bounds;
@@ -26,10 +27,11 @@ const DEPTH_STEPS: f64 = 8.0 / 16_777_216.0;
 /// Heights that are neither before nor behind a plane, as a share of coordinates.
 const SLACK: f64 = 1e-5;
 
-/// The passes of a light, which leave its visibility.
+/// The passes of a light, which leave its visibility; lists for the next frame go to `left`.
 pub(super) fn passes(
     frame: &LineFrame<'_>,
     turn: &mut LightTurn<'_, '_>,
+    left: &mut KeptLists,
 ) -> Result<Vec<Pass>, TechniqueError> {
     let volumes = frame.volumes.volumes(turn.number, turn.light().hard(), &[]);
     let counted = !volumes
@@ -44,7 +46,7 @@ pub(super) fn passes(
         depth_stencil: turn.targets.depth_stencil(LoadOp::Load, LoadOp::Clear(0)),
         draws: volumes.draws,
     };
-    let (shader, textures) = LightLines::of(frame, turn, counted)?;
+    let (shader, textures) = LightLines::of(frame, turn, counted, left)?;
     let pipeline = RenderPipeline {
         label: "lines".into(),
         vertex: FullScreen.stage(),
@@ -76,6 +78,7 @@ impl LightLines {
         frame: &LineFrame<'_>,
         turn: &mut LightTurn<'_, '_>,
         counted: bool,
+        left: &mut KeptLists,
     ) -> Result<(LineSamples, [TextureId; 8]), TechniqueError> {
         let light = line_light(turn.light(), turn.number, frame.settings.angle)?;
         let casters = frame.casters_of(turn.light());
@@ -89,7 +92,7 @@ impl LightLines {
             (light.as_ref(), &lines),
             recording,
         )?;
-        let work = Work::new(frame, &casters, light.as_ref());
+        let work = Work::new(frame, &casters, light.as_ref(), left);
         let source = SourceFrame::of(
             frame,
             turn.scene.lights[turn.number].clone(),
@@ -204,7 +207,13 @@ struct Work {
 }
 
 impl Work {
-    fn new(frame: &LineFrame<'_>, casters: &LineCasters, light: Option<&LineLight>) -> Self {
+    /// `left` gets what the next frame may need.
+    fn new(
+        frame: &LineFrame<'_>,
+        casters: &LineCasters,
+        light: Option<&LineLight>,
+        left: &mut KeptLists,
+    ) -> Self {
         let Some(light) = light else {
             let size = frame.blocks.size;
             let lists = BlockLists {
@@ -220,7 +229,16 @@ impl Work {
         let numbers = candidates(frame, casters, light);
         let edges = numbers.iter().map(|k| casters.edges[*k as usize]);
         let edges: Vec<ContourEdge> = edges.collect();
-        let mut lists = Culling::new(&edges, &casters.planes, light).lists(&frame.blocks);
+        let ends = casters.ends_of(&numbers);
+        let culling = Culling::new((&edges, &ends), &casters.planes, light);
+        let mut lists = match frame.before {
+            None => culling.lists(&frame.blocks),
+            Some(before) => {
+                let (lists, own) = culling.lists_after(&frame.blocks, before);
+                left.join(own);
+                lists
+            }
+        };
         if frame.settings.skip {
             return Self { edges, lists };
         }

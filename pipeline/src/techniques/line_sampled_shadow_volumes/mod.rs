@@ -22,6 +22,7 @@ use gnomon_raster::{Format, TextureDescriptor};
 use self::settings::LineSettings;
 use crate::geometry::line_sampling::blocks::BlockBounds;
 use crate::geometry::line_sampling::edges::LineCasters;
+use crate::geometry::line_sampling::kept_lists::KeptLists;
 use crate::geometry::line_sampling::patches::Patches;
 use crate::param_list;
 use crate::parts::frame_settings::FrameSettings;
@@ -32,7 +33,8 @@ use crate::parts::visibility::{Positions, VisibilityTexture};
 use crate::parts::volumes::light_contacts;
 use crate::parts::volumes::volume_draws::VolumeCasters;
 use crate::technique::{
-    Capabilities, Frame, ParamInfo, Params, ShadowKind, Technique, TechniqueError,
+    Capabilities, Frame, KeptPictures, KeptWork, ParamInfo, Params, ShadowKind, Technique,
+    TechniqueError,
 };
 use crate::world::light::Light;
 use crate::world::light_image::LightImage;
@@ -66,43 +68,69 @@ impl Technique for LineSampledShadowVolumes {
         size: [u32; 2],
         params: &Params,
     ) -> Result<Frame, TechniqueError> {
-        let settings = LineSettings::read(params)?;
-        let lit = settings.image.as_ref().map(|i| scene.with_light_image(i));
-        let scene = lit.as_ref().unwrap_or(scene);
-        let volumes = VolumeCasters::new(scene, size, &settings.volumes)?;
-        let patches = PatchesOf::new(&volumes)?;
-        let frame = ShadowedFrame::new(scene, size, &settings.frame)?;
-        let number = |object: &Object, t: u32| patches.number(object, t);
-        let (mut frame, positions) = frame.with_numbered_positions(&number)?;
-        let coloured = settings.image.is_some();
-        let format = match coloured {
-            true => Format::Rgba32Float,
-            false => Format::R32Float,
-        };
-        let desc = TextureDescriptor::d2("visibility", format, size[0], size[1]);
-        let visibility = VisibilityTexture {
-            coloured,
-            ..VisibilityTexture::red(frame.recording.create(&desc)?)
-        };
-        let lines = LineFrame {
-            settings: &settings,
-            blocks: BlockBounds::new(&scene.camera, size, &receivers(scene)),
-            view: View::new(&scene.camera, size),
-            volumes: &volumes,
-            patches: &patches,
-            positions,
-            visibility,
-        };
-        frame.lit(LitTest::Visibility(visibility), |turn| {
-            let contact = light_contacts::warning(scene, turn.number);
-            turn.notes.warnings.extend(contact);
-            light::passes(&lines, turn)
-        })
+        frame(scene, (size, None), params)
+    }
+
+    fn frame_after(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        params: &Params,
+        kept: &KeptPictures,
+    ) -> Result<Frame, TechniqueError> {
+        frame(scene, (size, Some(kept)), params)
     }
 
     fn light_image(&self, params: &Params) -> Result<Option<LightImage>, TechniqueError> {
         settings::image(params)
     }
+}
+
+/// A frame of a size, by itself or after another one that left something.
+fn frame(
+    scene: &Scene,
+    (size, before): ([u32; 2], Option<&KeptPictures>),
+    params: &Params,
+) -> Result<Frame, TechniqueError> {
+    let settings = LineSettings::read(params)?;
+    let lit = settings.image.as_ref().map(|i| scene.with_light_image(i));
+    let scene = lit.as_ref().unwrap_or(scene);
+    let volumes = VolumeCasters::new(scene, size, &settings.volumes)?;
+    let patches = PatchesOf::new(&volumes)?;
+    let frame = ShadowedFrame::new(scene, size, &settings.frame)?;
+    let number = |object: &Object, t: u32| patches.number(object, t);
+    let (mut frame, positions) = frame.with_numbered_positions(&number)?;
+    let coloured = settings.image.is_some();
+    let format = match coloured {
+        true => Format::Rgba32Float,
+        false => Format::R32Float,
+    };
+    let desc = TextureDescriptor::d2("visibility", format, size[0], size[1]);
+    let visibility = VisibilityTexture {
+        coloured,
+        ..VisibilityTexture::red(frame.recording.create(&desc)?)
+    };
+    let nothing = KeptLists::default();
+    let lines = LineFrame {
+        settings: &settings,
+        blocks: BlockBounds::new(&scene.camera, size, &receivers(scene)),
+        view: View::new(&scene.camera, size),
+        volumes: &volumes,
+        patches: &patches,
+        positions,
+        visibility,
+        before: before.map(|kept| kept.work.find().unwrap_or(&nothing)),
+    };
+    let mut left = KeptLists::default();
+    let mut frame = frame.lit(LitTest::Visibility(visibility), |turn| {
+        let contact = light_contacts::warning(scene, turn.number);
+        turn.notes.warnings.extend(contact);
+        light::passes(&lines, turn, &mut left)
+    })?;
+    if before.is_some() {
+        frame.work = KeptWork::of(left);
+    }
+    Ok(frame)
 }
 
 fn receivers(scene: &Scene) -> Vec<[glam::DVec3; 3]> {
@@ -120,6 +148,8 @@ struct LineFrame<'a> {
     patches: &'a PatchesOf,
     positions: Positions,
     visibility: VisibilityTexture,
+    /// Lists of the frame before, in an animation.
+    before: Option<&'a KeptLists>,
 }
 
 impl LineFrame<'_> {

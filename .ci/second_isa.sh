@@ -76,6 +76,7 @@ run() { # foreign|native COMMAND...
 }
 
 say "digests of all that the determinism suite renders"
+rm -f "$folder/native.digest" "$folder/foreign.digest"
 for side in native foreign; do
     test=$(artifact test determinism <"$folder/$side.json")
     GNOMON_DIGEST_FILE=$folder/$side.digest run $side "$test" --test-threads 2 2>&1 | tail -3
@@ -89,18 +90,24 @@ rm -rf "$folder/native" "$folder/foreign"
 program=$(artifact bin gnomon <"$folder/native.json")
 mapfile -t techniques < <("$program" techniques --json |
     python3 -c 'import json, sys; [print(t["name"]) for t in json.load(sys.stdin)["techniques"]]')
+[ ${#techniques[@]} -gt 0 ] || { echo "the program lists no techniques" && exit 1; }
 for technique in "${techniques[@]}"; do
     for side in native foreign; do
         program=$(artifact bin gnomon <"$folder/$side.json")
         mkdir -p "$folder/$side"
         run $side "$program" render creature --technique "$technique" --size 96x64 --threads 2 \
             --quiet --out "$folder/$side/$technique.png" --visibility "$folder/$side/$technique.npy" \
-            >/dev/null 2>"$folder/$side/$technique.txt" || true
+            >/dev/null 2>"$folder/$side/$technique.txt" && code=0 || code=$?
+        echo "$code" >"$folder/$side/$technique.code"
+        # It may refuse the scene in so many words; those of both sides are compared below.
+        if [ "$code" = 2 ] && grep -q "^error: technique '$technique' " "$folder/$side/$technique.txt"; then
+            echo "$technique refuses, $side: $(tail -1 "$folder/$side/$technique.txt")"
+        elif [ ! -s "$folder/$side/$technique.png" ]; then
+            echo "$technique drew nothing, $side: $(tail -1 "$folder/$side/$technique.txt")"
+            different=1
+        fi
     done
-    if [ ! -s "$folder/native/$technique.png" ]; then
-        echo "$technique drew nothing: $(tail -1 "$folder/native/$technique.txt")" && different=1
-    fi
-    for kind in png npy txt; do
+    for kind in png npy txt code; do
         a=$folder/native/$technique.$kind b=$folder/foreign/$technique.$kind
         if [ -e "$a" ] || [ -e "$b" ]; then
             cmp -s "$a" "$b" || { echo "$technique.$kind differs" && different=1; }

@@ -16,7 +16,7 @@ use gnomon::pipeline::world::scene;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::errors::{raise, raise_render};
+use crate::errors::{raise, raise_render, raise_technique};
 use crate::execution::{Execution, Given};
 use crate::frame::{Frame, document, rendered};
 use crate::json;
@@ -74,7 +74,7 @@ type Entry = (&'static dyn Technique, Params);
 fn common_image(entries: &[Entry]) -> PyResult<Option<LightImage>> {
     let mut common = None;
     for (number, (technique, params)) in entries.iter().enumerate() {
-        let image = technique.light_image(params).map_err(raise)?;
+        let image = technique.light_image(params).map_err(raise_technique)?;
         if number > 0 && image != common {
             return Err(PyValueError::new_err(format!(
                 "light-image of '{}' is not that of '{}'; valid is the same image on the light \

@@ -45,6 +45,14 @@ pub(crate) fn raise_render(error: RenderError) -> PyErr {
     }
 }
 
+/// The same of a pixel's history: it hands the GPU's errors on as its own.
+pub(crate) fn raise_history(error: HistoryError) -> PyErr {
+    match error {
+        HistoryError::Gpu(error) => raise(error),
+        other => raise(other),
+    }
+}
+
 /// What the system says of a file, in the words of `message`.
 pub(crate) fn of_system(kind: ErrorKind, message: String) -> PyErr {
     match kind {

@@ -1,8 +1,6 @@
 //! Traces: frames in files.
 
-use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gnomon::documents::{By, PixelDocument, TraceDocument, TrafficDocument, dram_bytes};
 use gnomon::pipeline::world::files;
@@ -18,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::accesses::{Accesses, WORDS};
-use crate::errors::{of_system, raise, raise_technique};
+use crate::errors::{of_system, raise, raise_history, raise_technique};
 use crate::execution::{Execution, Given};
 use crate::history::{EVENT_WORDS, event_rows, values};
 use crate::replay::Replay;
@@ -67,7 +65,7 @@ impl Trace {
     /// Writes the file; it appears whole or not at all.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let bytes = self.trace.to_bytes();
-        let written = py.detach(|| write_whole(&path, bytes));
+        let written = py.detach(|| files::write(&path, bytes));
         written.map_err(|e| {
             let message = format!(
                 "{}: cannot be written: {e}; nothing was written",
@@ -135,7 +133,7 @@ impl Trace {
             let recording = self.trace.recording(frame, &table).map_err(raise)?;
             let options = HistoryOptions { config, image };
             let found = guarded(frame, || history::pixel(&recording, &options, pixel));
-            found.map_err(raise)?.map_err(raise)
+            found.map_err(raise)?.map_err(raise_history)
         })?;
         let text = json::text(&PixelDocument::new(&history, frame))?;
         let rows: Vec<[u32; EVENT_WORDS]> = event_rows(&history);
@@ -279,18 +277,4 @@ fn find_profile(name: &str) -> PyResult<Profile> {
     })?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Profile::parse(&stem, name, &text).map_err(raise)
-}
-
-/// Beside its place first, so that nobody sees half of it.
-fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    // The file's own name might be too long to add to, and two threads may write at once.
-    static NUMBER: AtomicUsize = AtomicUsize::new(0);
-    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-    let part = path.with_file_name(format!(".gnomon-{}-{number}.part", std::process::id()));
-    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
-    if written.is_err() {
-        // What is left of it is of no use; that it stays there would be worse to tell.
-        let _ = fs::remove_file(&part);
-    }
-    written
 }

@@ -136,9 +136,8 @@ except MemoryError as error:
 @pytest.mark.skipif(sys.platform != "linux", reason="a limit of Linux")
 @pytest.mark.parametrize("call", ["render", "record"])
 def test_memory_that_is_short_is_an_error(tmp_path, call):
-    done = subprocess.run(
-        [sys.executable, "-c", SHORT.replace("CALL", call)], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    line = [sys.executable, "-c", SHORT.replace("CALL", call)]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("short:") and "which the system does not give" in done.stdout
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,16 @@ def test_files_are_those_of_the_command_line(recorded, tmp_path):
     assert (tmp_path / "w.gnt").read_bytes() == path.read_bytes()
     assert [p.name for p in tmp_path.iterdir()] == ["w.gnt"]
     assert bytes(gnomon.Trace.from_bytes(bytes(trace))) == bytes(trace)
+
+
+def test_threads_write_one_file(recorded, tmp_path):
+    """Each writes it whole, under a name as long as names may be."""
+    _, trace = recorded
+    path = tmp_path / ("n" * 251 + ".gnt")
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda _: trace.write(path), range(200)))
+    assert path.read_bytes() == bytes(trace)
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_what_a_trace_says(cli, recorded):

@@ -3,7 +3,8 @@
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+
+use gnomon_pipeline::world::files::temporary_name;
 
 use crate::error::CliError;
 
@@ -187,14 +188,6 @@ fn folder_of(target: &Path) -> &Path {
         Some(p) if !p.as_os_str().is_empty() => p,
         _ => Path::new("."),
     }
-}
-
-/// A name beside `target` that nobody else has; the target's own might be too long
-/// to add to.
-fn temporary_name(target: &Path) -> PathBuf {
-    static NUMBER: AtomicUsize = AtomicUsize::new(0);
-    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-    target.with_file_name(format!(".gnomon-{}-{number}.part", std::process::id()))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Reading files that a user names, and files that those name in turn.
+//! Reading files that a user names, and files that those name in turn; writing them whole.
 //!
 //! Only regular files are read, and never more than a limit: a device has no end,
 //! and a pipe may never answer. What a scene or a model names must lie in the
@@ -8,6 +8,7 @@
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read as _};
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use thiserror::Error;
 
@@ -222,6 +223,28 @@ fn open(path: &Path) -> io::Result<File> {
     OpenOptions::new().read(true).open(path)
 }
 
+/// Writes the file at `path`. It appears whole or not at all, whoever else writes it.
+///
+/// # Errors
+/// What the system says. Nothing is left behind then.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let part = temporary_name(path);
+    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
+    if written.is_err() {
+        // The first error is the one to report.
+        let _ = std::fs::remove_file(&part);
+    }
+    written
+}
+
+/// A name beside `target` that nobody else has, another thread neither; the target's own
+/// might be too long to add to.
+pub fn temporary_name(target: &Path) -> PathBuf {
+    static NUMBER: AtomicUsize = AtomicUsize::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    target.with_file_name(format!(".gnomon-{}-{number}.part", std::process::id()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -259,6 +282,31 @@ mod tests {
             read(&sparse, 1 << 30),
             Err(FileError::TooLong { .. })
         ));
+    }
+
+    #[test]
+    fn threads_write_whole_files_beside_each_other() {
+        let folder = Scratch::made("files-threads");
+        // As long as names may be.
+        let file = folder.join("n".repeat(255));
+        std::thread::scope(|s| {
+            for letter in *b"abcd" {
+                let file = &file;
+                s.spawn(move || {
+                    for _ in 0..50 {
+                        write(file, &[letter; 5000]).unwrap();
+                    }
+                });
+            }
+        });
+        let bytes = fs::read(&file).unwrap();
+        assert_eq!(bytes.len(), 5000);
+        assert!(bytes.iter().all(|b| *b == bytes[0]));
+        fs::remove_file(&file).unwrap();
+        fs::create_dir_all(file.join("full")).unwrap();
+        write(&file, b"x").unwrap_err();
+        let left = fs::read_dir(&*folder).unwrap().count();
+        assert_eq!(left, 1, "the folder alone");
     }
 
     #[test]

@@ -407,7 +407,7 @@ impl Culling<'_> {
 
 /// The next power of two above a number that is not negative.
 fn power_above(number: f64) -> f64 {
-    const MANTISSA: u64 = (1 << f64::MANTISSA_DIGITS - 1) - 1;
+    const MANTISSA: u64 = (1 << (f64::MANTISSA_DIGITS - 1)) - 1;
     let largest = f64::MAX.to_bits() & !MANTISSA;
     f64::from_bits(((number.to_bits() & !MANTISSA) + MANTISSA + 1).min(largest))
 }

@@ -113,6 +113,10 @@ fn coordinates_that_are_wrong_are_zeros_and_told() {
     }
     let counted = read("f 1/-4 2/-3 3/-2\n", LIBRARY);
     assert_eq!(counted.warnings, []);
+    // Each is one, counted from whichever end; none is of a face that is skipped.
+    let many = read("f 1/99 2/-5\nf 1/99 2/-5 3/-99\n", LIBRARY);
+    let counts: Vec<_> = many.warnings.iter().map(|w| (w.code, w.count)).collect();
+    assert_eq!(counts, [("skipped-faces", 1), ("bad-coordinates", 3)]);
     // Nobody looks at them without a picture.
     assert_eq!(read(faces, "newmtl wood\n").warnings, []);
 }

@@ -163,11 +163,12 @@ impl Scan {
 
     fn face(&mut self, line: usize, rest: &str) -> Result<(), ObjProblem> {
         let before = self.corners.len();
+        let mut bad = Vec::new();
         for word in rest.split_whitespace() {
             self.corners.push(corner(word, self.points.len())?);
             let at = texel(word, self.texels.len());
             if at.is_none() {
-                (self.bad_texels).add(|| format!("'{word}' in line {line}"));
+                bad.push(word);
             }
             self.corner_texels.push(at.unwrap_or(NO_TEXEL));
         }
@@ -177,6 +178,10 @@ impl Scan {
             self.corners.truncate(before);
             self.corner_texels.truncate(before);
             return Ok(());
+        }
+        // As those that are too high: of faces that are drawn.
+        for word in bad {
+            (self.bad_texels).add(|| format!("'{word}' in line {line}"));
         }
         self.faces.push(Face {
             corners,

@@ -8,8 +8,8 @@ TEXTURES = [("gnomon-pipeline", "lib", "texture"), ("gnomon-pipeline", "lib", "o
             ("gnomon-pipeline", "lib", "gltf"), ("gnomon-pipeline", "lib", "export"),
             ("gnomon-pipeline", "suite", "textures"), ("gnomon", "cli", "textures")]
 POSES = [("gnomon-pipeline", "lib", "gltf")]
-SAMPLES = [("gnomon-pipeline", "lib", "supersample"), ("gnomon-pipeline", "suite", "supersample"),
-           ("gnomon", "cli", "supersample"), ("gnomon", "cli", "render")]
+SAMPLES = [("gnomon-pipeline", "lib", "supersampl"), ("gnomon-pipeline", "suite", "supersampl"),
+           ("gnomon", "cli", "supersampl"), ("gnomon", "cli", "render")]
 FILES = [("gnomon-pipeline", "lib", "export"), ("gnomon-pipeline", "lib", "obj"),
          ("gnomon-pipeline", "lib", "scene"), ("gnomon", "cli", "export")]
 VIEWER = [("gnomon", "lib", "view"), ("gnomon", "cli", "view")]

@@ -8,7 +8,7 @@ use gnomon_pipeline::measure::render::{RenderSettings, Rendered, render};
 use gnomon_pipeline::technique::{Params, Technique};
 use gnomon_pipeline::techniques;
 use gnomon_pipeline::world::environment::FitSettings;
-use gnomon_pipeline::world::light::Light;
+use gnomon_pipeline::world::light::{Light, LightShape};
 use gnomon_pipeline::world::mesh::Shading;
 use gnomon_pipeline::world::scene::environment::EnvironmentRequest;
 use gnomon_pipeline::world::scene::{
@@ -211,6 +211,68 @@ fn look_ups_are_counted() {
     assert_eq!(total.traffic.tex_fetches[0], 2 * pixels, "ambient and lit");
     // Magnified: the first level alone, four texels of eight bytes.
     assert_eq!(total.traffic.tex[0].read_bytes, 2 * pixels * 4 * 8);
+}
+
+/// A square of half the picture's width before the eye, from x on.
+fn half(x: f64, material: Material, texel: [u8; 3]) -> Object {
+    let corners = [[x, 1.0], [x, -1.0], [x + 1.0, -1.0], [x + 1.0, 1.0]];
+    let square = Shape {
+        positions: corners.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    };
+    let mesh = square.into_mesh(Shading::Flat).unwrap();
+    let mut object = Object::new("half", mesh, material).receiver_only();
+    let texture = SurfaceTexture::repeated(picture(1, &[texel]));
+    lay(&mut object, texture, &[[[0.5; 2]; 3]]);
+    object
+}
+
+fn halves(objects: Vec<Object>, ambient: f32, light: Light) -> Rendered {
+    let camera = Camera {
+        fov_y_degrees: 90.0,
+        ..Camera::look_at(DVec3::Z, DVec3::ZERO)
+    };
+    let mut scene = Scene::new(camera, vec![light], objects);
+    scene.ambient = [ambient; 3];
+    drawn(&scene, techniques::find("unshadowed").unwrap(), SIDE)
+}
+
+/// Each surface has its own picture; a copy of one is no other.
+#[test]
+fn surfaces_have_their_own_pictures() {
+    let white = Material::matt([1.0; 3]);
+    let dark = Light {
+        colour: [0.0; 3],
+        ..Light::horizontal_square(DVec3::new(0.0, 4.0, 1.0), 1.0)
+    };
+    let rendered = halves(
+        vec![half(-1.0, white, RED), half(0.0, white, GREEN)],
+        1.0,
+        dark,
+    );
+    assert_eq!(quarters(&rendered), [RED, GREEN, RED, GREEN]);
+}
+
+/// A picture is of the base colour: what shines on black still shines.
+#[test]
+fn highlights_keep_their_colour() {
+    let shining = Material {
+        specular: [0.5, 0.25, 0.0],
+        shininess: 4.0,
+        ..Material::matt([1.0; 3])
+    };
+    let lamp = Light {
+        shape: LightShape::Point {
+            position: DVec3::new(-0.5, 0.0, 1.0),
+        },
+        colour: [1.0; 3],
+    };
+    let rendered = halves(vec![half(-1.0, shining, [0; 3])], 0.0, lamp);
+    let [r, g, b] = rendered.color[(4 * SIDE + 2) as usize];
+    assert!(
+        r > 0.1 && (g - r / 2.0).abs() < 1e-3 && b == 0.0,
+        "{r} {g} {b}"
+    );
 }
 
 const TINT: [u8; 3] = [200, 90, 30];

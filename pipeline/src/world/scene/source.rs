@@ -193,6 +193,9 @@ mod tests {
             let seen = source.seen(&plain, &view).unwrap();
             let made = source.clone().with_view(view.clone()).at(0.5).unwrap();
             assert!(seen == made && seen != plain, "{name}");
+            // The ground of models lies across the new sight, that of scenes stays.
+            let turned = seen.objects[0].mesh != plain.objects[0].mesh;
+            assert_eq!(turned, name != "walk", "{name}");
         }
     }
 

@@ -72,3 +72,63 @@ fn wrapped(mode: AddressMode, u: f64) -> f64 {
         AddressMode::ClampToEdge | AddressMode::ClampToBorder => u.clamp(-1.0, 2.0),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::world::texture::Picture;
+
+    /// Four texels in a row: black, white, black, black; averaged 1/2 and 0, then 1/4.
+    fn texture(address: AddressMode) -> SurfaceTexture {
+        let image = image::GrayImage::from_raw(4, 1, vec![0, 255, 0, 0]).unwrap();
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        let mut texture =
+            SurfaceTexture::repeated(Arc::new(Picture::decode(&bytes.into_inner()).unwrap()));
+        texture.sampler.address = [address; 3];
+        texture
+    }
+
+    fn grey(texture: &SurfaceTexture, u: f64, step: f64) -> f64 {
+        let [r, g, b] = texture.sample([u, 0.5], [[step, 0.0], [0.0, 0.0]]);
+        assert!(r == g && g == b);
+        r
+    }
+
+    #[test]
+    fn texels_have_their_own_colour_in_their_middles() {
+        let texture = texture(AddressMode::Repeat);
+        for (u, expected) in [(0.125, 0.0), (0.25, 0.5), (0.375, 1.0), (0.4375, 0.75)] {
+            assert_eq!(grey(&texture, u, 0.01), expected, "{u}");
+        }
+    }
+
+    /// By the texture rules: the level's texels are as wide as a pixel's step.
+    #[test]
+    fn levels_are_as_coarse_as_pixels() {
+        let texture = texture(AddressMode::Repeat);
+        for (texels, expected) in [(1.0, 1.0), (2.0, 0.375), (4.0, 0.25), (64.0, 0.25)] {
+            let seen = grey(&texture, 0.375, texels / 4.0);
+            assert!((seen - expected).abs() < 1e-12, "{texels}: {seen}");
+        }
+        // Half way between two levels.
+        let half = grey(&texture, 0.375, std::f64::consts::SQRT_2 / 4.0);
+        assert!((half - 0.5 * (1.0 + 0.375)).abs() < 1e-12, "{half}");
+    }
+
+    #[test]
+    fn coordinates_outside_are_where_their_address_says() {
+        for (address, expected) in [
+            (AddressMode::Repeat, [1.0, 0.0, 0.0]),
+            (AddressMode::MirrorRepeat, [0.0, 1.0, 1.0]),
+            (AddressMode::ClampToEdge, [0.0, 0.0, 0.0]),
+        ] {
+            let mut texture = texture(address);
+            texture.sampler.mag = FilterMode::Nearest;
+            let seen = [1.375, 1.625, -0.375].map(|u| grey(&texture, u, 0.01));
+            assert_eq!(seen, expected, "{address:?}");
+        }
+    }
+}

@@ -410,7 +410,7 @@ fn fewer_shades_are_the_same_shadow_in_larger_steps() {
         ("eg-logo", 0.3),
         ("adversarial-eye-in-shadow", 0.3),
         // Side planes meet above the floor: umbra ends without a wedge.
-        ("columns", 0.5642),
+        ("creature", 0.4),
     ] {
         let scene = with_sphere(scene(name), radius);
         for planes in ["cancel", "evaluate", "naive"] {

@@ -6,7 +6,7 @@
 //! more: a scene from elsewhere must not show what else is on the machine.
 
 use std::fs::{File, Metadata, OpenOptions};
-use std::io::{self, Read as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -229,7 +229,9 @@ fn open(path: &Path) -> io::Result<File> {
 /// What the system says. Nothing is left behind then.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let part = temporary_name(path);
-    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
+    let written = File::create_new(&part)
+        .and_then(|mut file| file.write_all(bytes))
+        .and_then(|()| std::fs::rename(&part, path));
     if written.is_err() {
         // The first error is the one to report.
         let _ = std::fs::remove_file(&part);

@@ -142,14 +142,8 @@ impl<'a> Culling<'a> {
 
     /// The lists of all blocks.
     pub fn lists(&self, blocks: &BlockBounds) -> BlockLists {
-        let parts = squares_of(blocks).into_par_iter().map(|at| {
-            let squares = Squares::new(self, blocks, at);
-            let of = |group| Arc::new(self.part(&squares, group));
-            (at, self.groups.iter().map(of).collect())
-        });
-        let parts: Vec<Parts> = parts.collect();
-        let tests = parts.iter().flat_map(|(_, parts)| parts).map(|p| p.tests);
-        self.assemble(blocks.size, tests.sum(), &parts)
+        let (parts, tests) = self.parts(blocks, |_, _| None);
+        self.assemble(blocks.size, tests, &parts)
     }
 
     /// The same after another frame of an animation: what is as it was there is not made
@@ -157,26 +151,38 @@ impl<'a> Culling<'a> {
     pub fn lists_after(&self, blocks: &BlockBounds, before: &KeptLists) -> (BlockLists, KeptLists) {
         let keys = Keys::new(self);
         let known = before.of(&keys);
-        let made = squares_of(blocks).into_par_iter().map(|at| {
-            let squares = Squares::new(self, blocks, at);
-            let key = Keys::of_square(blocks, at);
-            let mut tests = 0;
-            let of = |(group, known): (&Group, &super::kept_lists::OfCaster<'_>)| {
-                if let Some(part) = known.and_then(|k| k.get(&key)) {
-                    return part.clone();
-                }
-                let part = self.part(&squares, group);
-                tests += part.tests;
-                Arc::new(part)
-            };
-            let parts: Vec<Arc<Part>> = self.groups.iter().zip(&known).map(of).collect();
-            ((at, parts), (key, tests))
-        });
-        let (parts, made): (Vec<Parts>, Vec<_>) = made.unzip();
-        let tests = made.iter().map(|(_, tests)| tests).sum();
-        let own = parts.iter().zip(&made);
-        let kept = KeptLists::new(&keys, own.map(|((_, parts), (key, _))| (*key, &parts[..])));
+        let squares = squares_of(blocks).into_par_iter();
+        let squares: Vec<_> = squares.map(|at| Keys::of_square(blocks, at)).collect();
+        let found = |square: usize, group: usize| known[group]?.get(&squares[square]).cloned();
+        let (parts, tests) = self.parts(blocks, found);
+        let own = squares.iter().zip(&parts);
+        let kept = KeptLists::new(&keys, own.map(|(key, (_, parts))| (*key, &parts[..])));
         (self.assemble(blocks.size, tests, &parts), kept)
+    }
+
+    /// What casters have in squares of the first level, `found` by the numbers of both or
+    /// else made, and the tests that this took.
+    fn parts(
+        &self,
+        blocks: &BlockBounds,
+        found: impl Fn(usize, usize) -> Option<Arc<Part>> + Sync,
+    ) -> (Vec<Parts>, u64) {
+        let of_square = |(number, at): (usize, [u32; 2])| {
+            let squares = Squares::new(self, blocks, at);
+            let mut tests = 0;
+            let of = |(group, own): (usize, &Group)| {
+                found(number, group).unwrap_or_else(|| {
+                    let part = self.part(&squares, own);
+                    tests += part.tests;
+                    Arc::new(part)
+                })
+            };
+            let parts = self.groups.iter().enumerate().map(of).collect();
+            ((at, parts), tests)
+        };
+        let squares = squares_of(blocks).into_par_iter().enumerate();
+        let (parts, tests): (Vec<Parts>, Vec<u64>) = squares.map(of_square).unzip();
+        (parts, tests.iter().sum())
     }
 
     /// What is left of a caster's edges in a square of the first level.

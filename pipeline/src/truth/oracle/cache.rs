@@ -23,10 +23,8 @@
 mod key;
 mod transport;
 
-use std::fs::{self, File};
-use std::io::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use thiserror::Error;
 
@@ -200,21 +198,10 @@ impl OracleCache {
         self.folder.join(Key::of(scene, light, size).file_name())
     }
 
-    /// Writes under a name of its own, then renames.
+    /// Writes whole files, into a folder that is made where there is none.
     fn write(&self, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-        static WRITES: AtomicU64 = AtomicU64::new(0);
         fs::create_dir_all(&self.folder)?;
-        let number = WRITES.fetch_add(1, Ordering::Relaxed);
-        let unique = format!("tmp-{}-{number}", std::process::id());
-        let unfinished = path.with_extension(unique);
-        let written = File::create_new(&unfinished)
-            .and_then(|mut file| file.write_all(bytes))
-            .and_then(|()| fs::rename(&unfinished, path));
-        if written.is_err() {
-            // Best effort: the first error is the one to report.
-            let _ = fs::remove_file(&unfinished);
-        }
-        written
+        files::write(path, bytes)
     }
 }
 
